@@ -1,0 +1,31 @@
+// Parallel loops over oneTBB in fixed chunks. Which thread runs a chunk never changes a result: a
+// chunk writes its own outputs, and sums are taken in chunk order afterwards by the caller.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+
+namespace mdk {
+
+/// Limits the threads of every parallel loop while it lives; 0 means all cores. Nested limits: the
+/// smallest one wins.
+class ThreadLimit {
+ public:
+  explicit ThreadLimit(int threads);
+  ~ThreadLimit();
+  ThreadLimit(const ThreadLimit&) = delete;
+  ThreadLimit& operator=(const ThreadLimit&) = delete;
+
+ private:
+  void* control_;
+};
+
+/// How many threads a parallel loop may use now.
+int thread_count();
+
+/// Calls body(begin, end) for [0, n) cut into chunks of `grain`, in any order and on any thread.
+/// An exception from a body ends the loop and is passed on.
+void parallel_chunks(std::size_t n, std::size_t grain,
+                     const std::function<void(std::size_t begin, std::size_t end)>& body);
+
+}  // namespace mdk

@@ -1,0 +1,58 @@
+// PoseSequence: one fixed triangle list and key poses of its vertices (docs/method.md, words).
+// What readers make and what the decomposition takes.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "common/math/vec3.h"
+#include "common/motion/appearance.h"
+
+namespace mdk {
+
+struct Triangle {
+  std::uint32_t v[3] = {0, 0, 0};  ///< vertex indices, counter-clockwise seen from outside
+
+  bool operator==(const Triangle&) const = default;
+};
+
+/// A run of keys that are played together. Poses are interpolated between the keys of one clip,
+/// never from one clip to the next.
+struct Clip {
+  std::string name;
+  std::uint32_t first_key = 0;
+  std::uint32_t key_count = 0;  ///< at least one
+
+  bool operator==(const Clip&) const = default;
+};
+
+struct PoseSequence {
+  std::uint32_t vertex_count = 0;
+  std::vector<Triangle> triangles;
+  std::vector<Clip> clips;        ///< contiguous, in key order, covering every key
+  std::vector<double> key_times;  ///< per key: seconds from its clip's start, rising within a clip
+  std::vector<Vec3f> positions;   ///< key-major: vertex i at key k stands at k * vertex_count + i
+  Appearance appearance;
+
+  std::uint32_t key_count() const { return static_cast<std::uint32_t>(key_times.size()); }
+  std::span<const Vec3f> pose(std::uint32_t key) const {
+    return {positions.data() + static_cast<std::size_t>(key) * vertex_count, vertex_count};
+  }
+  std::span<Vec3f> pose(std::uint32_t key) {
+    return {positions.data() + static_cast<std::size_t>(key) * vertex_count, vertex_count};
+  }
+};
+
+/// Drops vertices no triangle uses and joins vertices that have the same path through all keys and
+/// the same `smoothing_group`; keeps the order of first use. Triangles keep their corners' order, so
+/// corner attributes stay valid. `smoothing_groups`: one per vertex, or empty for "all alike".
+/// Cost: O(vertices * keys).
+void weld_vertices(PoseSequence& sequence, std::span<const std::uint64_t> smoothing_groups);
+
+/// Throws std::logic_error where the parts do not fit together (a reader's bug, never a user's).
+void check_consistency(const PoseSequence& sequence);
+
+}  // namespace mdk

@@ -1,0 +1,39 @@
+// PosedMesh: a model's vertices at one moment.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "common/motion/model.h"
+
+namespace mdk {
+
+/// The pose of `model` at an interval: v0 + s (v1 - v0), in float, per coordinate. At a key the span
+/// points into the model and nothing is computed; between keys it points into the PosedMesh.
+class PosedMesh {
+ public:
+  explicit PosedMesh(const Model& model) : model_(&model) {}
+
+  /// Moves to another moment. Cost: O(vertices) between keys, O(1) at a key. Runs in parallel.
+  void set_time(const KeyInterval& at);
+
+  const Model& model() const { return *model_; }
+  const KeyInterval& at() const { return at_; }
+  std::span<const Vec3f> positions() const { return positions_; }
+
+ private:
+  const Model* model_;
+  KeyInterval at_;
+  std::span<const Vec3f> positions_;
+  std::vector<Vec3f> between_;
+};
+
+/// World box of cluster `c` at a moment: holds all its vertices. Linear between keys, which bounds
+/// linearly moving vertices (docs/method.md, time between keys).
+Aabb cluster_world_box(const Model& model, std::uint32_t c, const KeyInterval& at);
+
+/// Boxes of all triangles in the present pose, in triangle order; `boxes` has one per triangle.
+/// Runs in parallel.
+void triangle_boxes(const PosedMesh& mesh, std::span<Aabb> boxes);
+
+}  // namespace mdk

@@ -1,0 +1,56 @@
+// Technique: one way to keep an acceleration structure valid while the pose changes, behind one
+// interface, and the table of those there are (docs/method.md, techniques).
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "common/motion/posed_mesh.h"
+#include "common/trace/camera.h"
+#include "common/trace/frame_stats.h"
+#include "common/trace/hit_buffer.h"
+#include "common/trace/kernels/tile_kernels.h"
+
+namespace mdk {
+
+/// Every technique returns brute force's closest hit, bit for bit: a structure only chooses which
+/// triangles are tested. One object serves one model; update() and trace() alternate, trace() may
+/// run on many threads at once.
+class Technique {
+ public:
+  virtual ~Technique() = default;
+
+  /// Work that can be done ahead of the frame, timed apart from it (static trees for this pose).
+  virtual void prebuild(const PosedMesh&) {}
+
+  /// Makes the structure valid for this pose. The mesh must outlive the next trace().
+  virtual void update(const PosedMesh& mesh) = 0;
+
+  /// What the view asks for once per frame, before any tile: maps of the rays per cluster. O(clusters).
+  virtual void set_view(const PinholeRays&) {}
+
+  /// Closest hits of one tile. `hits` is clear on entry.
+  virtual void trace(const TileRays& tile, TileHits& hits, TileScratch& scratch,
+                     TraceCounters* counters) const = 0;
+
+  /// Memory of the structures, in bytes, without the mesh itself.
+  virtual std::size_t structure_bytes() const = 0;
+};
+
+struct TechniqueInfo {
+  std::string_view id;       ///< as on the command line
+  std::string_view label;    ///< as in the panel
+  std::string_view summary;  ///< half a sentence
+  std::string_view source;
+  std::unique_ptr<Technique> (*make)(const Model&);
+};
+
+/// All techniques, best known first, brute force last.
+std::span<const TechniqueInfo> technique_table();
+
+/// The row with this id; throws Error (kUsage) with the ids there are.
+const TechniqueInfo& find_technique(std::string_view id);
+
+}  // namespace mdk

@@ -1,0 +1,45 @@
+// Opens a .mdk image: maps it, checks everything tracing relies on, and gives a Model whose spans
+// point into the mapping (docs/file-format.md).
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "common/motion/model.h"
+
+namespace mdk {
+
+/// What the section table says, for `mdprep info`.
+struct MdkSectionInfo {
+  std::string name;  ///< as in docs/file-format.md
+  std::uint64_t bytes = 0;
+};
+
+class MdkFile {
+ public:
+  /// Maps and checks the file. Cost: a pass over the tables and links; positions and texels are not
+  /// touched. Throws Error: kIo (cannot read), kBadInput (not an .mdk, another version, cut, or
+  /// inconsistent; the sentence says where).
+  explicit MdkFile(const std::string& path);
+  ~MdkFile();
+  MdkFile(MdkFile&&) noexcept;
+  MdkFile& operator=(MdkFile&&) noexcept;
+
+  /// Valid while this lives.
+  const Model& model() const;
+  const std::string& path() const;
+  std::uint64_t file_bytes() const;
+  std::vector<MdkSectionInfo> sections() const;
+
+  /// Compares every section's contents with its stored checksum; throws Error (kBadInput) naming the
+  /// first one that differs. Reads the whole file.
+  void verify_checksums() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace mdk

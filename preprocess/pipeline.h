@@ -1,0 +1,56 @@
+// From a pose sequence to a model: Algorithm 1 of GFW06 and what surrounds it, top to bottom.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/base/progress.h"
+#include "common/motion/model.h"
+#include "common/motion/pose_sequence.h"
+
+namespace mdk {
+
+enum class DecomposeMode {
+  kMotion,  ///< clusters of triangles that move alike (GFW06 §3.1)
+  kNone,    ///< one cluster with identity maps: fuzzy boxes in world space
+};
+
+struct DecomposeOptions {
+  DecomposeMode mode = DecomposeMode::kMotion;
+  std::uint32_t clusters = 0;               ///< exactly so many; 0: as many as pay
+  std::optional<double> stop_percent;       ///< GFW06's rule: stop when a cluster lowers the residual by
+                                            ///< less than this; without it the cost decides
+  std::optional<std::uint32_t> rest_key;    ///< fixed rest pose; none: searched
+};
+
+/// What happened while clusters were added; row i is the state with i + 1 clusters.
+struct ClusteringStep {
+  std::uint32_t clusters = 0;
+  double residual_rms = 0;  ///< relative to the rest pose's diagonal
+  double sah_cost = 0;      ///< expected work per ray that meets the model (docs/method.md, cost)
+};
+
+struct DecomposeStats {
+  std::uint32_t rest_key = 0;
+  std::string stop_reason;   ///< one of: "cost", "percent", "count", "limit", "none"
+  double residual_rms = 0;   ///< over all keys, relative to the rest pose's diagonal
+  double residual_max = 0;
+  double sah_cost = 0;
+  std::vector<ClusteringStep> steps;
+  double decompose_seconds = 0, build_seconds = 0;
+};
+
+struct DecomposeResult {
+  ModelStorage model;
+  DecomposeStats stats;
+};
+
+/// Consumes the sequence (its positions move into the model). The result depends on the input and
+/// options alone, not on the thread count or instruction set. Throws Error: kUsage (a rest key or
+/// cluster count that does not exist), kBadInput (no triangles).
+DecomposeResult decompose(PoseSequence sequence, const DecomposeOptions& options,
+                          ProgressSink& progress);
+
+}  // namespace mdk
