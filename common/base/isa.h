@@ -6,8 +6,8 @@
 
 namespace mdk {
 
-/// Use no more than this: "sse4", "avx2", "avx512" or "neon". Throws Error (kUsage) for another word
-/// or for a set this machine lacks. Call before any kernel has run, or between frames.
+/// Use no more than this: "sse4", "avx2", "avx512" or "neon". Throws Error (kUsage) for another
+/// word or for a set this machine lacks. Call before any kernel has run, or between frames.
 void limit_isa(std::string_view name);
 
 /// Back to the best there is.

@@ -8,8 +8,8 @@ namespace mdk {
 class ProgressSink {
  public:
   virtual ~ProgressSink() = default;
-  /// `fraction` in [0, 1] of the whole job; `stage` as shown to people ("decompose"). Called from one
-  /// thread at a time. To cancel the job, throw from here.
+  /// `fraction` in [0, 1] of the whole job; `stage` as shown to people ("decompose"). Called from
+  /// one thread at a time. To cancel the job, throw from here.
   virtual void report(std::string_view stage, double fraction) = 0;
 };
 

@@ -27,7 +27,9 @@ struct BasicAabb {
   bool contains(const Vec3<T>& p) const {
     return lo.x <= p.x && p.x <= hi.x && lo.y <= p.y && p.y <= hi.y && lo.z <= p.z && p.z <= hi.z;
   }
-  bool contains(const BasicAabb& b) const { return b.empty() || (contains(b.lo) && contains(b.hi)); }
+  bool contains(const BasicAabb& b) const {
+    return b.empty() || (contains(b.lo) && contains(b.hi));
+  }
 
   void extend(const Vec3<T>& p) {
     lo = {std::min(lo.x, p.x), std::min(lo.y, p.y), std::min(lo.z, p.z)};

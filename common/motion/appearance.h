@@ -44,9 +44,9 @@ struct Appearance {
   std::vector<Material> materials;                ///< at least one
   std::vector<std::uint32_t> triangle_materials;  ///< T
   std::vector<TexCoord> corner_texcoords;         ///< 0 or 3 T
-  std::vector<std::uint32_t> corner_colors;       ///< 0 or 3 T: linear RGBA, 8 bits each, red lowest
+  std::vector<std::uint32_t> corner_colors;  ///< 0 or 3 T: linear RGBA, 8 bits each, red lowest
   std::vector<Texture> textures;
-  std::vector<std::uint32_t> texels;              ///< sRGB RGBA, 8 bits each, red lowest
+  std::vector<std::uint32_t> texels;  ///< sRGB RGBA, 8 bits each, red lowest
 };
 
 }  // namespace mdk

@@ -19,7 +19,8 @@
 namespace mdk {
 
 /// One cluster: triangles that move alike, in one local basis (GFW06 §3.1). 64 bytes, as the file
-/// holds it. Clusters partition the triangles in order: each one's range starts where the last ended.
+/// holds it. Clusters partition the triangles in order: each one's range starts where the last
+/// ended.
 struct Cluster {
   std::uint32_t first_triangle = 0, triangle_count = 0;
   std::uint32_t first_node = 0, node_count = 0;  ///< its fuzzy kd-tree in kd_nodes
@@ -40,15 +41,15 @@ struct Model {
   std::span<const double> key_times;     ///< F
   std::span<const Vec3f> key_positions;  ///< F * V, key-major, world space
 
-  std::span<const Triangle> triangles;  ///< T, sorted by cluster
+  std::span<const Triangle> triangles;              ///< T, sorted by cluster
   std::span<const std::uint32_t> source_triangles;  ///< T: the triangle's number in the input
 
-  std::span<const Cluster> clusters;             ///< K
-  std::span<const Affine3f> local_from_world;    ///< F * K, key-major
-  std::span<const Aabb> cluster_world_boxes;     ///< F * K, key-major
-  std::span<const Aabb> fuzzy_boxes;             ///< T, in the local basis of its cluster
-  std::span<const KdNode> kd_nodes;              ///< node links relative to the cluster's first node
-  std::span<const std::uint32_t> kd_refs;        ///< triangle indices (absolute)
+  std::span<const Cluster> clusters;           ///< K
+  std::span<const Affine3f> local_from_world;  ///< F * K, key-major
+  std::span<const Aabb> cluster_world_boxes;   ///< F * K, key-major
+  std::span<const Aabb> fuzzy_boxes;           ///< T, in the local basis of its cluster
+  std::span<const KdNode> kd_nodes;            ///< node links relative to the cluster's first node
+  std::span<const std::uint32_t> kd_refs;      ///< triangle indices (absolute)
 
   std::span<const Material> materials;
   std::span<const std::uint32_t> triangle_materials;  ///< T
@@ -115,8 +116,8 @@ struct KeyInterval {
   bool operator==(const KeyInterval&) const = default;
 };
 
-/// The interval of `clip` (an index) that holds `seconds`; times outside the clip are clamped to it.
-/// Cost: O(log keys).
+/// The interval of `clip` (an index) that holds `seconds`; times outside the clip are clamped to
+/// it. Cost: O(log keys).
 KeyInterval locate_time(const Model& model, std::uint32_t clip, double seconds);
 
 /// Exactly at a key.

@@ -47,8 +47,8 @@ struct PoseSequence {
 };
 
 /// Drops vertices no triangle uses and joins vertices that have the same path through all keys and
-/// the same `smoothing_group`; keeps the order of first use. Triangles keep their corners' order, so
-/// corner attributes stay valid. `smoothing_groups`: one per vertex, or empty for "all alike".
+/// the same `smoothing_group`; keeps the order of first use. Triangles keep their corners' order,
+/// so corner attributes stay valid. `smoothing_groups`: one per vertex, or empty for "all alike".
 /// Cost: O(vertices * keys).
 void weld_vertices(PoseSequence& sequence, std::span<const std::uint64_t> smoothing_groups);
 

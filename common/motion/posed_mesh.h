@@ -8,8 +8,8 @@
 
 namespace mdk {
 
-/// The pose of `model` at an interval: v0 + s (v1 - v0), in float, per coordinate. At a key the span
-/// points into the model and nothing is computed; between keys it points into the PosedMesh.
+/// The pose of `model` at an interval: v0 + s (v1 - v0), in float, per coordinate. At a key the
+/// span points into the model and nothing is computed; between keys it points into the PosedMesh.
 class PosedMesh {
  public:
   explicit PosedMesh(const Model& model) : model_(&model) {}

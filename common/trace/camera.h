@@ -18,8 +18,8 @@ struct Camera {
 };
 
 /// The ray through image point (x, y), in pixels from the upper left corner, is
-/// origin + t (corner + x du + y dv); pixel (i, j) has its centre at (i + 0.5, j + 0.5). Directions are
-/// not normalised: their component along the view axis is 1, so t is the depth along that axis.
+/// origin + t (corner + x du + y dv); pixel (i, j) has its centre at (i + 0.5, j + 0.5). Directions
+/// are not normalised: their component along the view axis is 1, so t is the depth along that axis.
 struct PinholeRays {
   Vec3f origin, corner, du, dv;
 

@@ -39,8 +39,8 @@ class Renderer {
   void set_technique(std::string_view id);
   std::string_view technique_id() const;
 
-  /// Pose, update, trace and shade; results stay valid until the next call. Throws Error (kUsage) for
-  /// a size or camera that cannot be.
+  /// Pose, update, trace and shade; results stay valid until the next call. Throws Error (kUsage)
+  /// for a size or camera that cannot be.
   const FrameStats& render(const FrameRequest& request);
 
   /// As render(), without shading.

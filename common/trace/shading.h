@@ -1,4 +1,5 @@
-// Shading: from hits to pixels. The same for every technique, so that pictures differ only if hits do.
+// Shading: from hits to pixels. The same for every technique, so that pictures differ only if hits
+// do.
 #pragma once
 
 #include <cstdint>
@@ -38,14 +39,16 @@ class Shader {
   explicit Shader(const Model& model);
 
   /// `pixels`: width * height of the hit buffer. Runs in parallel.
-  void shade(const PosedMesh& mesh, const PinholeRays& rays, const HitBuffer& hits, ShadingMode mode,
-             std::span<std::uint32_t> pixels);
+  void shade(const PosedMesh& mesh, const PinholeRays& rays, const HitBuffer& hits,
+             ShadingMode mode, std::span<std::uint32_t> pixels);
 
  private:
   void compute_vertex_normals(const PosedMesh& mesh);
-  Vec3f shading_normal(const PosedMesh& mesh, std::uint32_t triangle, const Vec3f& face_normal,
-                       const float bary[3]) const;
-  Vec3f base_color(std::uint32_t triangle, const float bary[3]) const;
+  Vec3f shade_hit(const PosedMesh& mesh, const PinholeRays& rays, const Vec3f& direction,
+                  std::uint32_t triangle, ShadingMode mode) const;
+  Vec3f shading_normal(std::uint32_t triangle, const Vec3f& face_normal,
+                       const float (&bary)[3]) const;
+  Vec3f base_color(std::uint32_t triangle, const float (&bary)[3]) const;
 
   const Model* model_;
   std::vector<std::uint32_t> triangle_cluster_;

@@ -28,7 +28,8 @@ class Technique {
   /// Makes the structure valid for this pose. The mesh must outlive the next trace().
   virtual void update(const PosedMesh& mesh) = 0;
 
-  /// What the view asks for once per frame, before any tile: maps of the rays per cluster. O(clusters).
+  /// What the view asks for once per frame, before any tile: maps of the rays per cluster.
+  /// O(clusters).
   virtual void set_view(const PinholeRays&) {}
 
   /// Closest hits of one tile. `hits` is clear on entry.

@@ -29,7 +29,9 @@ struct PixelFromWorld {
 struct FrustumBasis {
   Vec3d origin;
   Vec3d corner_x_dv, du_x_corner, du_x_dv;  ///< cross products
-  double det = 0;                           ///< of (corner, du, dv); its sign tells a mirrored basis
+  double det = 0;          ///< of (corner, du, dv); its sign tells a mirrored basis
+  double plane_error = 0;  ///< bounds the rounding of a side plane's normal, per component
+  double depth_error = 0;  ///< the same for the gradient of the depth
 };
 
 FrustumBasis make_frustum_basis(const PinholeRays& world_rays);

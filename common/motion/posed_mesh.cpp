@@ -1,0 +1,52 @@
+#include "common/motion/posed_mesh.h"
+
+#include "common/base/parallel.h"
+
+namespace mdk {
+namespace {
+
+constexpr std::size_t kVerticesPerChunk = 16384;
+constexpr std::size_t kTrianglesPerChunk = 8192;
+
+}  // namespace
+
+void PosedMesh::set_time(const KeyInterval& at) {
+  at_ = at;
+  const std::span<const Vec3f> from = model_->key_pose(at.key0);
+  if (at.s == 0.0f || at.key0 == at.key1) {
+    positions_ = from;
+    return;
+  }
+  const std::span<const Vec3f> to = model_->key_pose(at.key1);
+  between_.resize(from.size());
+  parallel_chunks(from.size(), kVerticesPerChunk, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) between_[i] = from[i] + (to[i] - from[i]) * at.s;
+  });
+  positions_ = between_;
+}
+
+Aabb cluster_world_box(const Model& model, std::uint32_t c, const KeyInterval& at) {
+  const Aabb& from = model.key_world_boxes(at.key0)[c];
+  if (at.s == 0.0f || at.key0 == at.key1) return from;
+  const Aabb& to = model.key_world_boxes(at.key1)[c];
+  const double s = at.s;
+  const auto lerp = [s](const Vec3f& a, const Vec3f& b) {
+    const Vec3d from_d = to_double(a);
+    return from_d + (to_double(b) - from_d) * s;
+  };
+  return round_outward(Aabbd{lerp(from.lo, to.lo), lerp(from.hi, to.hi)});
+}
+
+void triangle_boxes(const PosedMesh& mesh, std::span<Aabb> boxes) {
+  const std::span<const Triangle> triangles = mesh.model().triangles;
+  const std::span<const Vec3f> positions = mesh.positions();
+  parallel_chunks(triangles.size(), kTrianglesPerChunk, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      Aabb box;
+      for (std::uint32_t v : triangles[i].v) box.extend(positions[v]);
+      boxes[i] = box;
+    }
+  });
+}
+
+}  // namespace mdk

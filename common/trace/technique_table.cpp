@@ -1,0 +1,35 @@
+#include <string>
+
+#include "common/base/error.h"
+#include "common/trace/technique.h"
+#include "common/trace/techniques/makers.h"
+
+namespace mdk {
+
+std::span<const TechniqueInfo> technique_table() {
+  static constexpr TechniqueInfo kTable[] = {
+      {"fuzzy-kdtree", "Fuzzy kd-tree", "motion clusters, one kd-tree each for all poses", "GFW06",
+       make_fuzzy_kdtree},
+      {"static-kdtree", "Static kd-tree", "a kd-tree built ahead for every key", "GFW06 Table 1",
+       make_static_kdtree},
+      {"rebuild-bvh", "Rebuilt BVH", "binned SAH hierarchy, built anew every frame", "Lo09 §4.1",
+       make_rebuild_bvh},
+      {"refit-bvh", "Refitted BVH", "hierarchy of the rest pose, boxes refitted every frame",
+       "Lo09 §4.2", make_refit_bvh},
+      {"brute-force", "Brute force", "every triangle for every tile: the oracle", "–",
+       make_brute_force},
+  };
+  return kTable;
+}
+
+const TechniqueInfo& find_technique(std::string_view id) {
+  std::string known;
+  for (const TechniqueInfo& row : technique_table()) {
+    if (row.id == id) return row;
+    known += (known.empty() ? "" : ", ") + std::string(row.id);
+  }
+  throw Error(ErrorCode::kUsage,
+              "no technique is called '" + std::string(id) + "'; there are " + known);
+}
+
+}  // namespace mdk

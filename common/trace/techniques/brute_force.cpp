@@ -1,0 +1,26 @@
+// No structure at all: what every other technique is judged by.
+#include "common/trace/techniques/makers.h"
+
+namespace mdk {
+namespace {
+
+class BruteForceTechnique final : public Technique {
+ public:
+  void update(const PosedMesh& mesh) override { soup_ = soup_of(mesh); }
+  void trace(const TileRays& tile, TileHits& hits, TileScratch& scratch,
+             TraceCounters* counters) const override {
+    trace_tile_brute_force(tile, soup_, hits, scratch, counters);
+  }
+  std::size_t structure_bytes() const override { return 0; }
+
+ private:
+  TriangleSoup soup_{};
+};
+
+}  // namespace
+
+std::unique_ptr<Technique> make_brute_force(const Model&) {
+  return std::make_unique<BruteForceTechnique>();
+}
+
+}  // namespace mdk

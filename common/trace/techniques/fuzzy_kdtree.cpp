@@ -1,0 +1,61 @@
+// Motion decomposition with fuzzy kd-trees (GFW06). The trees stand in the model and never change;
+// per frame only the clusters move: K world boxes, a small kd-tree over them, and K maps for the
+// rays.
+#include <vector>
+
+#include "common/structures/kd_tree_builder.h"
+#include "common/trace/techniques/makers.h"
+
+namespace mdk {
+namespace {
+
+class FuzzyKdTechnique final : public Technique {
+ public:
+  explicit FuzzyKdTechnique(const Model& model)
+      : model_(model), world_boxes_(model.cluster_count()), clusters_(model.cluster_count()) {
+    for (std::size_t c = 0; c < clusters_.size(); ++c)
+      clusters_[c].tree = model.fuzzy_tree(model.clusters[c]);
+  }
+
+  void update(const PosedMesh& mesh) override {
+    soup_ = soup_of(mesh);
+    at_ = mesh.at();
+    for (std::uint32_t c = 0; c < world_boxes_.size(); ++c)
+      world_boxes_[c] = cluster_world_box(model_, c, at_);
+    top_ = build_kd_tree(world_boxes_);
+  }
+
+  void set_view(const PinholeRays& rays) override {
+    const std::span<const Affine3f> from = model_.key_maps(at_.key0),
+                                    to = model_.key_maps(at_.key1);
+    for (std::size_t c = 0; c < clusters_.size(); ++c)
+      clusters_[c].basis = make_frustum_basis(rays, interpolate(from[c], to[c], at_.s));
+  }
+
+  void trace(const TileRays& tile, TileHits& hits, TileScratch& scratch,
+             TraceCounters* counters) const override {
+    trace_tile_two_level_kd(tile, top_.view(), clusters_, soup_, hits, scratch, counters);
+  }
+
+  std::size_t structure_bytes() const override {
+    return model_.kd_nodes.size_bytes() + model_.kd_refs.size_bytes() +
+           model_.local_from_world.size_bytes() + model_.cluster_world_boxes.size_bytes() +
+           top_.bytes();
+  }
+
+ private:
+  const Model& model_;
+  KeyInterval at_;
+  TriangleSoup soup_{};
+  std::vector<Aabb> world_boxes_;
+  KdTree top_;
+  std::vector<ClusterView> clusters_;
+};
+
+}  // namespace
+
+std::unique_ptr<Technique> make_fuzzy_kdtree(const Model& model) {
+  return std::make_unique<FuzzyKdTechnique>(model);
+}
+
+}  // namespace mdk

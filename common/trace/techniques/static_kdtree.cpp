@@ -1,0 +1,57 @@
+// A kd-tree built ahead of time for every pose that is shown, then only swapped in: the baseline of
+// GFW06 Table 1. It costs a tree per key; between keys one is built for that very moment, and
+// counts as prebuilt all the same.
+#include <map>
+#include <tuple>
+#include <vector>
+
+#include "common/structures/kd_tree_builder.h"
+#include "common/trace/techniques/makers.h"
+
+namespace mdk {
+namespace {
+
+class StaticKdTechnique final : public Technique {
+ public:
+  void prebuild(const PosedMesh& mesh) override {
+    const KeyInterval& at = mesh.at();
+    std::map<Moment, KdTree>& trees = at.s == 0.0f ? at_keys_ : between_keys_;
+    const Moment moment{at.key0, at.key1, at.s};
+    if (trees.contains(moment)) return;
+    if (at.s != 0.0f) between_keys_.clear();  // only the present one: their number has no end
+    std::vector<Aabb> boxes(mesh.model().triangle_count());
+    triangle_boxes(mesh, boxes);
+    trees.emplace(moment, build_kd_tree(boxes));
+  }
+  void update(const PosedMesh& mesh) override {
+    soup_ = soup_of(mesh);
+    const KeyInterval& at = mesh.at();
+    const std::map<Moment, KdTree>& trees = at.s == 0.0f ? at_keys_ : between_keys_;
+    present_ = &trees.at({at.key0, at.key1, at.s});
+  }
+  void trace(const TileRays& tile, TileHits& hits, TileScratch& scratch,
+             TraceCounters* counters) const override {
+    trace_tile_kd(tile, present_->view(), soup_, hits, scratch, counters);
+  }
+  std::size_t structure_bytes() const override {
+    std::size_t bytes = 0;
+    for (const auto* trees : {&at_keys_, &between_keys_})
+      for (const auto& [moment, tree] : *trees) bytes += tree.bytes();
+    return bytes;
+  }
+
+ private:
+  using Moment = std::tuple<std::uint32_t, std::uint32_t, float>;
+
+  TriangleSoup soup_{};
+  std::map<Moment, KdTree> at_keys_, between_keys_;
+  const KdTree* present_ = nullptr;
+};
+
+}  // namespace
+
+std::unique_ptr<Technique> make_static_kdtree(const Model&) {
+  return std::make_unique<StaticKdTechnique>();
+}
+
+}  // namespace mdk
