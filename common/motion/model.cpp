@@ -1,0 +1,61 @@
+// Views of stored models, and looking up times and keys in the clip table.
+#include "common/motion/model.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace mdk {
+
+Model ModelStorage::view() const {
+  Model model;
+  model.vertex_count = vertex_count;
+  model.rest_key = rest_key;
+  model.bounds = bounds;
+  model.rest_diagonal = rest_diagonal;
+  model.clips = clips;
+  model.key_times = key_times;
+  model.key_positions = key_positions;
+  model.triangles = triangles;
+  model.source_triangles = source_triangles;
+  model.clusters = clusters;
+  model.local_from_world = local_from_world;
+  model.cluster_world_boxes = cluster_world_boxes;
+  model.fuzzy_boxes = fuzzy_boxes;
+  model.kd_nodes = kd_nodes;
+  model.kd_refs = kd_refs;
+  model.materials = appearance.materials;
+  model.triangle_materials = appearance.triangle_materials;
+  model.corner_texcoords = appearance.corner_texcoords;
+  model.corner_colors = appearance.corner_colors;
+  model.textures = appearance.textures;
+  model.texels = appearance.texels;
+  return model;
+}
+
+KeyInterval locate_time(const Model& model, std::uint32_t clip_index, double seconds) {
+  const Clip& clip = model.clips[clip_index];
+  const auto times = model.key_times.subspan(clip.first_key, clip.key_count);
+  const std::uint32_t last = clip.key_count - 1;
+  if (!(seconds > times[0])) return at_key(clip.first_key);  // NaN comes here too
+  if (seconds >= times[last]) return at_key(clip.first_key + last);
+
+  const auto after = std::upper_bound(times.begin(), times.end(), seconds);
+  const auto k1 = static_cast<std::uint32_t>(after - times.begin());
+  const std::uint32_t k0 = k1 - 1;
+  const double exact = (seconds - times[k0]) / (times[k1] - times[k0]);
+  const auto s = static_cast<float>(exact);
+  // Rounding to float may arrive at either key: the interval is half open, and a key stands for
+  // itself.
+  if (s <= 0.0f) return at_key(clip.first_key + k0);
+  if (s >= 1.0f) return at_key(clip.first_key + k1);
+  return {clip.first_key + k0, clip.first_key + k1, s};
+}
+
+std::uint32_t clip_of_key(const Model& model, std::uint32_t key) {
+  const auto after = std::upper_bound(
+      model.clips.begin(), model.clips.end(), key,
+      [](std::uint32_t value, const Clip& clip) { return value < clip.first_key; });
+  return static_cast<std::uint32_t>(after - model.clips.begin()) - 1;
+}
+
+}  // namespace mdk

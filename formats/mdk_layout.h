@@ -1,0 +1,139 @@
+// The .mdk file's bytes as types: header, section table, records, and which section holds which
+// part of a Model (docs/file-format.md). The records of common/ that the file holds as they are get
+// pinned here.
+#pragma once
+
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+#include <type_traits>
+
+#include "common/motion/model.h"
+
+namespace mdk::layout {
+
+static_assert(std::endian::native == std::endian::little,
+              "the file is read in place: a big-endian machine needs a converting reader");
+
+inline constexpr std::array<unsigned char, 8> kMagic = {0x89, 'M',  'D',  'K',
+                                                        '\r', '\n', 0x1a, '\n'};
+inline constexpr std::uint32_t kByteOrder = 0x01020304;
+inline constexpr std::uint16_t kMajorVersion = 1;
+inline constexpr std::uint16_t kMinorVersion = 0;
+inline constexpr std::uint64_t kAlignment = 64;
+inline constexpr std::uint32_t kMaxSections = 256;
+inline constexpr std::uint32_t kSectionNeeded =
+    1;  ///< flag: whoever does not know the id must refuse
+inline constexpr std::uint32_t kPoseKindKeyPositions = 0;
+
+struct FileHeader {
+  std::array<unsigned char, 8> magic = kMagic;
+  std::uint32_t byte_order = kByteOrder;
+  std::uint16_t major_version = kMajorVersion, minor_version = kMinorVersion;
+  std::uint64_t file_bytes = 0;
+  std::uint32_t section_count = 0;
+  std::uint32_t reserved[7] = {};
+  std::uint64_t checksum = 0;  ///< of all before it and the section table
+};
+static_assert(sizeof(FileHeader) == 64 && offsetof(FileHeader, checksum) == 56);
+
+struct SectionEntry {
+  std::uint32_t id = 0;
+  std::uint32_t flags = 0;
+  std::uint32_t element_bytes = 0;
+  std::uint32_t reserved = 0;
+  std::uint64_t element_count = 0;
+  std::uint64_t offset = 0;
+  std::uint64_t checksum = 0;
+
+  /// Meaningful once the entry was checked against its file.
+  std::uint64_t bytes() const { return element_count * element_bytes; }
+};
+static_assert(sizeof(SectionEntry) == 40);
+
+struct ModelRecord {
+  std::uint32_t vertex_count = 0, key_count = 0, triangle_count = 0, cluster_count = 0;
+  std::uint32_t clip_count = 0, rest_key = 0;
+  std::uint32_t pose_kind = kPoseKindKeyPositions;
+  std::uint32_t reserved = 0;
+  double rest_diagonal = 0;
+  Aabb bounds;
+};
+static_assert(sizeof(ModelRecord) == 64 && offsetof(ModelRecord, bounds) == 40);
+
+struct ClipRecord {
+  std::uint32_t name_offset = 0, name_bytes = 0;
+  std::uint32_t first_key = 0, key_count = 0;
+};
+static_assert(sizeof(ClipRecord) == 16);
+
+static_assert(sizeof(Aabb) == 24 && sizeof(Affine3f) == 48 && sizeof(Vec3f) == 12);
+static_assert(sizeof(Triangle) == 12 && sizeof(TexCoord) == 8 && sizeof(KdNode) == 8);
+static_assert(sizeof(Material) == 32 && offsetof(Material, texture) == 16);
+static_assert(sizeof(Texture) == 16 && offsetof(Texture, first_texel) == 8);
+static_assert(sizeof(Cluster) == 64 && offsetof(Cluster, local_box) == 24);
+
+struct SectionKind {
+  std::uint32_t id = 0;
+  std::string_view name;  ///< as in docs/file-format.md
+};
+
+/// Four letters as a number, the first in the lowest byte.
+constexpr std::uint32_t fourcc(const char (&letters)[5]) {
+  std::uint32_t id = 0;
+  for (int i = 0; i < 4; ++i) {
+    id |= static_cast<std::uint32_t>(static_cast<unsigned char>(letters[i])) << (8 * i);
+  }
+  return id;
+}
+
+inline constexpr SectionKind kModel{fourcc("MODL"), "model"};
+inline constexpr SectionKind kClips{fourcc("CLIP"), "clips"};
+inline constexpr SectionKind kClipNames{fourcc("NAME"), "clip_names"};
+inline constexpr SectionKind kKeyTimes{fourcc("TIME"), "key_times"};
+inline constexpr SectionKind kClusters{fourcc("CLUS"), "clusters"};
+inline constexpr SectionKind kKdNodes{fourcc("NODE"), "kd_nodes"};
+inline constexpr SectionKind kKdRefs{fourcc("REFS"), "kd_refs"};
+inline constexpr SectionKind kTriangles{fourcc("TRIS"), "triangles"};
+inline constexpr SectionKind kSourceTriangles{fourcc("SRCT"), "source_triangles"};
+inline constexpr SectionKind kLocalFromWorld{fourcc("MAPS"), "local_from_world"};
+inline constexpr SectionKind kWorldBoxes{fourcc("WBOX"), "cluster_world_boxes"};
+inline constexpr SectionKind kFuzzyBoxes{fourcc("FBOX"), "fuzzy_boxes"};
+inline constexpr SectionKind kMaterials{fourcc("MATL"), "materials"};
+inline constexpr SectionKind kTriangleMaterials{fourcc("TMAT"), "triangle_materials"};
+inline constexpr SectionKind kTexcoords{fourcc("UVCO"), "corner_texcoords"};
+inline constexpr SectionKind kColors{fourcc("COLR"), "corner_colors"};
+inline constexpr SectionKind kTextures{fourcc("TEXI"), "textures"};
+inline constexpr SectionKind kTexels{fourcc("TEXL"), "texels"};
+inline constexpr SectionKind kKeyPositions{fourcc("POSE"), "key_positions"};
+
+/// Calls visit(kind, span) for the lists of a model that stand in a section of their own and are
+/// mapped as they are, in file order: what opening reads first, the bulk last. Clips and scalars
+/// are records of their own and not visited.
+template <class ModelRef, class Visit>
+void for_each_array(ModelRef&& model, Visit&& visit) {
+  visit(kKeyTimes, model.key_times);
+  visit(kClusters, model.clusters);
+  visit(kKdNodes, model.kd_nodes);
+  visit(kKdRefs, model.kd_refs);
+  visit(kTriangles, model.triangles);
+  visit(kSourceTriangles, model.source_triangles);
+  visit(kLocalFromWorld, model.local_from_world);
+  visit(kWorldBoxes, model.cluster_world_boxes);
+  visit(kFuzzyBoxes, model.fuzzy_boxes);
+  visit(kMaterials, model.materials);
+  visit(kTriangleMaterials, model.triangle_materials);
+  visit(kTexcoords, model.corner_texcoords);
+  visit(kColors, model.corner_colors);
+  visit(kTextures, model.textures);
+  visit(kTexels, model.texels);
+  visit(kKeyPositions, model.key_positions);
+}
+
+constexpr std::uint64_t align_up(std::uint64_t offset) {
+  return (offset + kAlignment - 1) / kAlignment * kAlignment;
+}
+
+}  // namespace mdk::layout

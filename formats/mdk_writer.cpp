@@ -1,0 +1,133 @@
+// Lays the sections out one after another, each on its own cache line, and writes them in that
+// order.
+#include "formats/mdk_writer.h"
+
+#include <array>
+#include <cstring>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "common/base/error.h"
+#include "formats/atomic_file.h"
+#include "formats/mdk_layout.h"
+#include "formats/mdk_sections.h"
+#include "formats/model_check.h"
+
+namespace mdk {
+namespace {
+
+using layout::ClipRecord;
+using layout::FileHeader;
+using layout::ModelRecord;
+using layout::SectionEntry;
+using layout::SectionKind;
+
+struct Section {
+  SectionEntry entry;
+  std::span<const std::byte> content;
+};
+
+/// What the file holds in another form than the model does.
+struct Records {
+  ModelRecord model;
+  std::vector<ClipRecord> clips;
+  std::string clip_names;
+  std::vector<Cluster> clusters;  ///< reserved fields zeroed
+};
+
+Records make_records(const Model& model) {
+  Records records;
+  ModelRecord& r = records.model;
+  r.vertex_count = model.vertex_count;
+  r.key_count = model.key_count();
+  r.triangle_count = model.triangle_count();
+  r.cluster_count = model.cluster_count();
+  r.clip_count = static_cast<std::uint32_t>(model.clips.size());
+  r.rest_key = model.rest_key;
+  r.rest_diagonal = model.rest_diagonal;
+  r.bounds = model.bounds;
+  for (const Clip& clip : model.clips) {
+    records.clips.push_back({static_cast<std::uint32_t>(records.clip_names.size()),
+                             static_cast<std::uint32_t>(clip.name.size()), clip.first_key,
+                             clip.key_count});
+    records.clip_names += clip.name;
+  }
+  records.clusters.assign(model.clusters.begin(), model.clusters.end());
+  for (Cluster& cluster : records.clusters) {
+    for (std::uint32_t& word : cluster.reserved) word = 0;
+  }
+  return records;
+}
+
+template <class T>
+Section make_section(const SectionKind& kind, std::span<const T> elements) {
+  Section section;
+  section.entry.id = kind.id;
+  section.entry.flags = layout::kSectionNeeded;
+  section.entry.element_bytes = sizeof(T);
+  section.entry.element_count = elements.size();
+  section.content = std::as_bytes(elements);
+  section.entry.checksum = checksum_of(section.content);
+  return section;
+}
+
+std::vector<Section> make_sections(const Model& model, const Records& records) {
+  std::vector<Section> sections;
+  sections.push_back(make_section(layout::kModel, std::span(&records.model, 1)));
+  sections.push_back(make_section(layout::kClips, std::span(records.clips)));
+  sections.push_back(make_section(layout::kClipNames, std::span(records.clip_names)));
+  Model written = model;
+  written.clusters = records.clusters;
+  layout::for_each_array(written, [&](const SectionKind& kind, auto elements) {
+    sections.push_back(make_section(kind, elements));
+  });
+  return sections;
+}
+
+/// Sets the offsets and returns the size of the file.
+std::uint64_t place(std::vector<Section>& sections) {
+  std::uint64_t end = sizeof(FileHeader) + sections.size() * sizeof(SectionEntry);
+  for (Section& section : sections) {
+    section.entry.offset = layout::align_up(end);
+    end = section.entry.offset + section.content.size();
+  }
+  return layout::align_up(end);
+}
+
+void pad(AtomicFile& file, std::uint64_t written, std::uint64_t until) {
+  constexpr std::array<std::byte, layout::kAlignment> kZeros{};
+  file.write(std::span(kZeros).first(until - written));
+}
+
+}  // namespace
+
+std::uint64_t write_mdk(const Model& model, const std::string& path) {
+  if (const std::string fault = find_inconsistency(model); !fault.empty()) {
+    throw Error(ErrorCode::kInternal, path + ": not written, the model is inconsistent (" + fault +
+                                          "): please report this as a bug");
+  }
+  const Records records = make_records(model);
+  std::vector<Section> sections = make_sections(model, records);
+  FileHeader header;
+  header.file_bytes = place(sections);
+  header.section_count = static_cast<std::uint32_t>(sections.size());
+  std::vector<SectionEntry> table;
+  for (const Section& section : sections) table.push_back(section.entry);
+  header.checksum = table_checksum(header, table);
+
+  AtomicFile file(path);
+  file.write(std::as_bytes(std::span(&header, 1)));
+  file.write(std::as_bytes(std::span(table)));
+  std::uint64_t written = sizeof(header) + table.size() * sizeof(SectionEntry);
+  for (const Section& section : sections) {
+    pad(file, written, section.entry.offset);
+    file.write(section.content);
+    written = section.entry.offset + section.content.size();
+  }
+  pad(file, written, header.file_bytes);
+  file.commit();
+  return header.file_bytes;
+}
+
+}  // namespace mdk
