@@ -44,19 +44,19 @@ struct BvhBuildConfig {
   int bins = 16;  ///< 2 to 1024, per axis
   float traversal_cost = 1.0f;
   float intersect_cost = 1.0f;
-  std::uint32_t max_leaf = 8;  ///< most references in a leaf (more only where centroids coincide
-                               ///< and the depth is used up)
+  std::uint32_t max_leaf = 8;  ///< most references in a leaf, at least 1
 };
 
-/// Binned SAH over box centroids (Wald 2007; Lo09 §4.1). Boxes must not be empty. Cost: O(N log N).
-/// The result depends on the input alone.
+/// Binned SAH over box centroids (Wald 2007; Lo09 §4.1). Where bins cannot tell items apart, or
+/// would dig past kMaxBvhDepth, a node is halved instead. Boxes must be finite and not empty, fewer
+/// than 2^31. Cost: O(N log N). The result depends on the input alone.
 Bvh build_bvh(std::span<const Aabb> boxes, const BvhBuildConfig& config = {});
 
 /// New boxes for the same items, bottom up (Lo09 §4.2). `boxes` has one per item, as in the build.
 /// Cost: O(N).
 void refit_bvh(Bvh& bvh, std::span<const Aabb> boxes);
 
-/// Expected cost of a ray that meets the root's box (SAH).
+/// Expected cost of a ray that meets the root's box (SAH). A root without area counts as met whole.
 double sah_cost(const Bvh& bvh, const BvhBuildConfig& config);
 
 }  // namespace mdk

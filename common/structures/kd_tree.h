@@ -58,8 +58,8 @@ struct KdTree {
 };
 
 /// Whether a tree from outside can be walked blindly: links forward and each node reached once,
-/// depth within kMaxKdDepth, reference runs inside `refs`, each reference in [ref_begin, ref_end),
-/// splits not NaN. Cost: O(nodes + refs).
+/// depth within kMaxKdDepth, reference runs inside `refs` and together no longer than it, each
+/// reference in [ref_begin, ref_end), splits finite. Cost: O(nodes + refs).
 bool is_well_formed(const KdTreeView& tree, std::uint32_t ref_begin, std::uint32_t ref_end);
 
 }  // namespace mdk

@@ -9,8 +9,9 @@
 
 namespace mdk {
 
-/// Area of a box as the rays see it: 2 (xy ex ey + yz ey ez + zx ez ex). Ones give the plain surface
-/// area; a cluster's basis stretches its axes unevenly, which its weights undo (docs/method.md, cost).
+/// Area of a box as the rays see it: 2 (xy ex ey + yz ey ez + zx ez ex). Ones give the plain
+/// surface area; a cluster's basis stretches its axes unevenly, which its weights undo
+/// (docs/method.md, cost).
 struct AreaWeights {
   double xy = 1, yz = 1, zx = 1;
 
@@ -27,8 +28,11 @@ struct KdBuildConfig {
   AreaWeights area;
 };
 
-/// A tree whose leaves refer to `ref_base` + index into `boxes`. Empty boxes are left out. With no
-/// boxes: one empty leaf. The result depends on the input alone.
+/// A tree whose leaves refer to `ref_base` + index into `boxes`. Every point of a box lies in the
+/// closed cell of a leaf that lists it; a tree lists at most 8 references per box. Bounds: the
+/// union of the boxes. Boxes must be finite; empty ones are left out. With no boxes: one empty
+/// leaf. The result depends on the input alone. Throws Error (kOverLimit) past 2^27 boxes. Cost:
+/// O(N log N).
 KdTree build_kd_tree(std::span<const Aabb> boxes, std::uint32_t ref_base = 0,
                      const KdBuildConfig& config = {});
 
