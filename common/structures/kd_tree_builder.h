@@ -25,7 +25,7 @@ struct KdBuildConfig {
   float intersect_cost = 1.5f;  ///< ...one item's test being this much
   float empty_bonus = 0.8f;     ///< factor on the cost of a split that cuts off empty space
   std::uint32_t max_depth = 0;  ///< 0: 8 + 1.3 log2 N; never past kMaxKdDepth
-  AreaWeights area;
+  AreaWeights area{};
 };
 
 /// A tree whose leaves refer to `ref_base` + index into `boxes`. Every point of a box lies in the

@@ -1,0 +1,192 @@
+// The kernels against brute force where rounding is all there is: slivers and sheets seen edge-on,
+// pictures whose pixels are smaller than the coordinates' last bit, hits in front of what is
+// culled.
+#include "common/trace/kernels/tile_kernels.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <random>
+#include <vector>
+
+#include "common/base/isa.h"
+#include "common/structures/kd_tree_builder.h"
+
+namespace mdk {
+namespace {
+
+constexpr std::uint32_t kWidth = 48, kHeight = 64;
+
+/// A few triangles of their own corners, traced by brute force and through structures with one
+/// triangle per leaf, so that every culling decision counts.
+class Trial {
+ public:
+  void add(const Vec3f& a, const Vec3f& b, const Vec3f& c) {
+    const auto first = static_cast<std::uint32_t>(positions_.size());
+    triangles_.push_back({{first, first + 1, first + 2}});
+    positions_.insert(positions_.end(), {a, b, c});
+    Aabb box;
+    for (const Vec3f& p : {a, b, c}) box.extend(p);
+    boxes_.push_back(box);
+  }
+
+  /// Pixels where a structure's hit is not brute force's.
+  int mismatches(const Camera& camera) {
+    const PinholeRays rays = make_pinhole_rays(camera, kWidth, kHeight);
+    const PixelFromWorld pixel_from_world = make_pixel_from_world(rays);
+    const FrustumBasis basis = make_frustum_basis(rays);
+    const TriangleSoup soup{triangles_.data(), positions_.data(),
+                            static_cast<std::uint32_t>(triangles_.size())};
+    const Bvh bvh = build_bvh(boxes_, {.max_leaf = 1});
+    const KdTree kd = build_kd_tree(boxes_, 0, {.intersect_cost = 50});
+    int different = 0;
+    for (std::uint32_t y = 0; y < kHeight; y += kTileSide)
+      for (std::uint32_t x = 0; x < kWidth; x += kTileSide) {
+        const TileRays tile{&rays, &pixel_from_world, &basis, x, y};
+        trace_tile_brute_force(tile, soup, cleared(hits_[0]), scratch_, nullptr);
+        trace_tile_bvh(tile, bvh, soup, cleared(hits_[1]), scratch_, nullptr);
+        trace_tile_kd(tile, kd.view(), soup, cleared(hits_[2]), scratch_, nullptr);
+        for (std::uint32_t i = 0; i < kTilePixels; ++i) {
+          hit_count_ += hits_[0].triangle[i] != kNoHit;
+          different += !same(i, hits_[1]) + !same(i, hits_[2]);
+        }
+      }
+    return different;
+  }
+
+  int hit_count() const { return hit_count_; }
+
+ private:
+  static TileHits& cleared(TileHits& hits) {
+    hits.clear();
+    return hits;
+  }
+  bool same(std::uint32_t i, const TileHits& other) const {
+    return hits_[0].triangle[i] == other.triangle[i] &&
+           (hits_[0].triangle[i] == kNoHit || hits_[0].t[i] == other.t[i]);
+  }
+
+  std::vector<Triangle> triangles_;
+  std::vector<Vec3f> positions_;
+  std::vector<Aabb> boxes_;
+  std::array<TileHits, 3> hits_;
+  TileScratch scratch_;
+  int hit_count_ = 0;
+};
+
+class TileKernels : public testing::TestWithParam<std::string_view> {
+ protected:
+  void SetUp() override { limit_isa(GetParam()); }
+  void TearDown() override { reset_isa(); }
+
+  float unit() { return distribution_(random_); }
+  float between(float a, float b) { return a + (b - a) * (0.5f + 0.5f * unit()); }
+
+ private:
+  std::mt19937 random_{2026};
+  std::uniform_real_distribution<float> distribution_{-1, 1};
+};
+
+TEST_P(TileKernels, TrianglesInThePlaneOfAPixelColumnHitOnlyWhereTheirBoxIs) {
+  const Camera camera{.eye = {0, 0, 0}, .target = {0, 0, -1}, .vertical_fov_deg = 60};
+  const PinholeRays rays = make_pinhole_rays(camera, kWidth, kHeight);
+  int mismatches = 0;
+  for (int i = 0; i < 3000; ++i) {
+    const float column = std::floor(between(0, kWidth)) + 0.5f;
+    const auto on_column = [&](float row, float depth) {
+      return rays.direction(column, row) * depth;
+    };
+    const float row = between(0, kHeight), reach = between(0.1f, 12);
+    Trial trial;
+    for (int k = 0; k < 6; ++k)
+      trial.add(on_column(row + reach * unit(), between(1, 5)),
+                on_column(row + reach * unit(), between(1, 5)),
+                on_column(row + reach * unit(), between(1, 5)));
+    mismatches += trial.mismatches(camera);
+  }
+  EXPECT_EQ(mismatches, 0);
+}
+
+TEST_P(TileKernels, HitsOfSheetsSeenEdgeOnStayWithinTheirDepth) {
+  const Camera camera{.eye = {0, 0, 0}, .target = {0, 0, -1}, .vertical_fov_deg = 60};
+  const PinholeRays rays = make_pinhole_rays(camera, kWidth, kHeight);
+  int mismatches = 0, hits = 0;
+  for (int i = 0; i < 3000; ++i) {
+    const float column = std::floor(between(0, kWidth)) + 0.5f;
+    Trial trial;
+    const float wall = between(2, 6);  // in front of some of what follows
+    trial.add(rays.direction(-100, -100) * wall, rays.direction(200, -100) * wall,
+              rays.direction(20, 300) * wall);
+    for (int k = 0; k < 6; ++k) {
+      const float row = between(0, kHeight), depth = wall * between(0.9f, 1.1f);
+      const auto near_column = [&] {
+        return rays.direction(column + 1e-6f * unit(), row + 3 * unit()) *
+               (depth * between(1, 1.02f));
+      };
+      trial.add(near_column(), near_column(), near_column());
+    }
+    mismatches += trial.mismatches(camera);
+    hits += trial.hit_count();
+  }
+  EXPECT_EQ(mismatches, 0);
+  EXPECT_GT(hits, 0);
+}
+
+TEST_P(TileKernels, PixelsSmallerThanTheCoordinatesLastBitLoseNoHit) {
+  int mismatches = 0, hits = 0;
+  for (int i = 0; i < 3000; ++i) {
+    const Vec3f far{1e6f * unit(), 1e6f * unit(), 1e6f * unit()};
+    const auto nearby = [&](float size) {
+      return far + Vec3f{size * unit(), size * unit(), size * unit()};
+    };
+    const Camera camera{.eye = nearby(20), .target = far, .vertical_fov_deg = between(0.05f, 3)};
+    if (camera.eye == camera.target) continue;
+    Trial trial;
+    for (int k = 0; k < 8; ++k) trial.add(nearby(1), nearby(1), nearby(1));
+    mismatches += trial.mismatches(camera);
+    hits += trial.hit_count();
+  }
+  EXPECT_EQ(mismatches, 0);
+  EXPECT_GT(hits, 10000);
+}
+
+TEST_P(TileKernels, TrianglesAroundTheEyeAreHitInFrontOnly) {
+  int mismatches = 0, hits = 0;
+  for (int i = 0; i < 1000; ++i) {
+    const auto point = [&] { return Vec3f{unit(), unit(), unit()}; };
+    const Camera camera{
+        .eye = point() * 0.2f, .target = point(), .vertical_fov_deg = between(5, 170)};
+    Trial trial;
+    for (int k = 0; k < 12; ++k) trial.add(point(), point(), point());
+    mismatches += trial.mismatches(camera);
+    hits += trial.hit_count();
+  }
+  EXPECT_EQ(mismatches, 0);
+  EXPECT_GT(hits, 10000);
+}
+
+TEST_P(TileKernels, CornersThatAreNotNumbersAreNeverHit) {
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  const float inf = std::numeric_limits<float>::infinity();
+  const Camera camera{.eye = {0, 0, 3}, .target = {0, 0, 0}};
+  const PinholeRays rays = make_pinhole_rays(camera, kWidth, kHeight);
+  const PixelFromWorld pixel_from_world = make_pixel_from_world(rays);
+  const FrustumBasis basis = make_frustum_basis(rays);
+  for (const float bad : {nan, inf, -inf}) {
+    const std::vector<Vec3f> positions = {{bad, 0, 0}, {1, -1, 0}, {-1, -1, 0}, {0, bad, bad}};
+    const std::vector<Triangle> triangles = {{{0, 1, 2}}, {{1, 0, 2}}, {{3, 1, 2}}, {{0, 0, 3}}};
+    const TriangleSoup soup{triangles.data(), positions.data(), 4};
+    TileHits hits;
+    hits.clear();
+    TileScratch scratch;
+    const TileRays tile{&rays, &pixel_from_world, &basis, 16, 32};
+    trace_tile_brute_force(tile, soup, hits, scratch, nullptr);
+    for (const std::uint32_t triangle : hits.triangle) EXPECT_EQ(triangle, kNoHit);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Isas, TileKernels, testing::ValuesIn(available_isas()),
+                         [](const auto& param) { return std::string(param.param); });
+
+}  // namespace
+}  // namespace mdk
