@@ -1,0 +1,194 @@
+// mdprep bake: source in, one .mdk image out.
+#include <sys/resource.h>
+
+#include <CLI/CLI.hpp>
+#include <iostream>
+#include <memory>
+
+#include "common/base/error.h"
+#include "common/base/stopwatch.h"
+#include "formats/mdk_writer.h"
+#include "preprocess/cli/bake_report.h"
+#include "preprocess/cli/commands.h"
+#include "preprocess/cli/common_options.h"
+#include "preprocess/cli/depfile.h"
+#include "preprocess/cli/interrupt.h"
+#include "preprocess/cli/number_text.h"
+#include "preprocess/cli/output_paths.h"
+#include "preprocess/cli/progress_bar.h"
+#include "preprocess/cli/source_reader.h"
+#include "preprocess/cli/text_file.h"
+#include "preprocess/pipeline.h"
+
+namespace mdk {
+namespace {
+
+/// Shares of the whole job, for progress alone.
+constexpr double kReadUntil = 0.1;
+constexpr double kDecomposeUntil = 0.97;
+
+struct BakeArguments {
+  std::string input, output, report, depfile;
+  SourceOptions source;
+  std::string mode = "motion";
+  std::string clusters = "auto";
+  std::string stop = "cost";
+  std::string rest_pose = "auto";
+  MachineOptions machine;
+  MessageOptions messages;
+};
+
+DecomposeOptions parse_decompose_options(const BakeArguments& arguments) {
+  DecomposeOptions options;
+  if (arguments.mode == "none") {
+    options.mode = DecomposeMode::kNone;
+  } else if (arguments.mode != "motion") {
+    throw Error(ErrorCode::kUsage, "--decompose " + arguments.mode + ": expected motion or none");
+  }
+  if (arguments.clusters != "auto")
+    options.clusters = parse_count("--clusters", arguments.clusters, {});
+  if (arguments.stop != "cost") {
+    options.stop_percent = parse_real("--stop", arguments.stop);
+    if (!(*options.stop_percent > 0 && *options.stop_percent < 100))
+      throw Error(ErrorCode::kUsage, "--stop " + arguments.stop +
+                                         ": expected cost, or a percentage above 0 and below 100");
+  }
+  if (arguments.rest_pose != "auto")
+    options.rest_key = parse_count("--rest-pose", arguments.rest_pose, {0, 0xffffffffu});
+
+  if (options.clusters > 0 && options.stop_percent)
+    throw Error(ErrorCode::kUsage,
+                "--clusters N and --stop PCT contradict each other; give one of them");
+  if (options.mode == DecomposeMode::kNone && (options.clusters > 1 || options.stop_percent))
+    throw Error(ErrorCode::kUsage,
+                "--decompose none makes one cluster; leave --clusters and --stop out");
+  return options;
+}
+
+std::uint64_t peak_memory_bytes() {
+  rusage usage = {};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;  // Linux counts in KiB
+}
+
+void print_notes(const BakeArguments& arguments, const std::vector<std::string>& notes) {
+  if (arguments.messages.quiet || notes.empty()) return;
+  if (arguments.messages.verbose) {
+    for (const std::string& note : notes) std::cerr << "mdprep: note: " << note << "\n";
+  } else {
+    std::cerr << "mdprep: " << arguments.input << ": " << notes.size()
+              << (notes.size() == 1 ? " note" : " notes")
+              << " on what was left out; -v shows them\n";
+  }
+}
+
+void print_steps(const std::vector<ClusteringStep>& steps) {
+  for (const ClusteringStep& step : steps)
+    std::cerr << "mdprep: " << step.clusters << " clusters: residual "
+              << fixed_text(step.residual_rms * 100, 4) << " % rms, cost "
+              << fixed_text(step.sah_cost, 2) << "\n";
+}
+
+void check_places(const BakeArguments& arguments) {
+  const std::string outputs[] = {arguments.output, arguments.report, arguments.depfile};
+  require_distinct_files(arguments.input, outputs);
+  require_writable_place(arguments.output);
+  if (!arguments.report.empty()) require_writable_place(arguments.report);
+  if (!arguments.depfile.empty()) require_writable_place(arguments.depfile);
+}
+
+void run_bake(const BakeArguments& arguments) {
+  const MachineLimits limits(arguments.machine);
+  const DecomposeOptions options = parse_decompose_options(arguments);
+  parse_source_options(arguments.source);
+  ProgressBar progress(std::cerr, progress_style(arguments.messages));
+  require_known_extension(arguments.input);
+  check_places(arguments);
+  defer_interrupts();
+
+  BakeOutcome outcome{arguments.input, arguments.output, {}, 0, 0};
+  Stopwatch total, stage;
+  ProgressPart reading(progress, 0, kReadUntil);
+  GltfResult source = read_source(arguments.input, arguments.source, reading);
+  outcome.seconds.read = stage.lap();
+
+  ProgressPart decomposing(progress, kReadUntil, kDecomposeUntil);
+  const DecomposeResult result = decompose(std::move(source.sequence), options, decomposing);
+  outcome.seconds.decompose = result.stats.decompose_seconds;
+  outcome.seconds.build = result.stats.build_seconds;
+
+  progress.report("write", kDecomposeUntil);
+  stage.lap();
+  const Model model = result.model.view();
+  outcome.file_bytes = write_mdk(model, arguments.output);
+  outcome.seconds.write = stage.lap();
+  outcome.seconds.total = total.seconds();
+  outcome.peak_memory_bytes = peak_memory_bytes();
+
+  if (!arguments.report.empty())
+    write_text_file(arguments.report, bake_report_json(model, result.stats, outcome));
+  if (!arguments.depfile.empty())
+    write_text_file(arguments.depfile, depfile_text(arguments.output, source.dependencies));
+  progress.clear();
+  print_notes(arguments, source.notes);
+  if (arguments.messages.verbose) print_steps(result.stats.steps);
+  if (!arguments.messages.quiet) std::cerr << bake_summary(model, result.stats, outcome);
+}
+
+void add_decompose_options(CLI::App& command, BakeArguments& arguments) {
+  command
+      .add_option("--decompose", arguments.mode,
+                  "motion: clusters of triangles that move alike; none: one cluster that does\n"
+                  "not move (default: motion).")
+      ->type_name("motion|none");
+  command
+      .add_option("--clusters", arguments.clusters,
+                  "How many clusters: as many as pay, or exactly N, at least 1 (default: auto).")
+      ->type_name("auto|N");
+  command
+      .add_option("--stop", arguments.stop,
+                  "When to stop adding clusters: cost, when another would make rays dearer; a\n"
+                  "percentage above 0 and below 100, when another lowers the residual by less\n"
+                  "(default: cost).")
+      ->type_name("cost|PCT");
+  command
+      .add_option("--rest-pose", arguments.rest_pose,
+                  "The key the local bases are fitted to, counted from 0 through all clips, or\n"
+                  "the best there is (default: auto).")
+      ->type_name("auto|KEY");
+}
+
+}  // namespace
+
+CommandBody add_bake_command(CLI::App& command) {
+  const auto arguments = std::make_shared<BakeArguments>();
+  command
+      .add_option("INPUT", arguments->input,
+                  "An animated mesh: .gltf or .glb (skins, morph targets, node animation).")
+      ->required();
+  command
+      .add_option("-o,--output", arguments->output,
+                  "The file to write. It appears whole or not at all.")
+      ->required()
+      ->type_name("OUT.mdk");
+  add_source_options(command, arguments->source);
+  add_decompose_options(command, *arguments);
+  command
+      .add_option("--report", arguments->report,
+                  "Write counts, residuals, cost and times as JSON (mdprep-bake/1).")
+      ->type_name("FILE");
+  command
+      .add_option("--depfile", arguments->depfile,
+                  "Write every file that was read as dependencies for make and ninja.")
+      ->type_name("FILE");
+  add_machine_options(command, arguments->machine);
+  add_message_options(command, arguments->messages);
+  add_verbose_option(command, arguments->messages);
+  command.footer(
+      "Example:\n"
+      "  mdprep bake hand.glb -o hand.mdk --report hand.json\n"
+      "  mdprep bake fox.glb -o fox.mdk --clips Walk,Run --fps 24 --stop 5");
+  return [arguments] { run_bake(*arguments); };
+}
+
+}  // namespace mdk

@@ -1,0 +1,168 @@
+// mdprep info: what is inside a .mdk file, as a table or as JSON.
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "formats/mdk_view.h"
+#include "preprocess/cli/commands.h"
+#include "preprocess/cli/common_options.h"
+#include "preprocess/cli/number_text.h"
+#include "preprocess/cli/text_table.h"
+
+namespace mdk {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct InfoArguments {
+  std::string input;
+  bool json = false;
+  MachineOptions machine;
+};
+
+struct ClusterSizes {
+  std::uint32_t smallest = 0, largest = 0;
+};
+
+ClusterSizes cluster_sizes(const Model& model) {
+  ClusterSizes sizes{model.triangle_count(), 0};
+  for (const Cluster& cluster : model.clusters) {
+    sizes.smallest = std::min(sizes.smallest, cluster.triangle_count);
+    sizes.largest = std::max(sizes.largest, cluster.triangle_count);
+  }
+  return sizes;
+}
+
+Json json_of(const Vec3f& v) { return Json::array({v.x, v.y, v.z}); }
+
+Json json_of_clips(const Model& model) {
+  Json clips = Json::array();
+  for (const Clip& clip : model.clips)
+    clips.push_back({{"name", clip.name},
+                     {"seconds", model.clip_seconds(clip)},
+                     {"first_key", clip.first_key},
+                     {"keys", clip.key_count}});
+  return clips;
+}
+
+void print_json(const MdkFile& file) {
+  const Model& model = file.model();
+  Json textures = Json::array();
+  for (const Texture& texture : model.textures)
+    textures.push_back({{"width", texture.width}, {"height", texture.height}});
+  Json sections = Json::array();
+  for (const MdkSectionInfo& section : file.sections())
+    sections.push_back({{"name", section.name}, {"bytes", section.bytes}});
+  const ClusterSizes sizes = cluster_sizes(model);
+  const Json info = {
+      {"schema", "mdprep-info/1"},
+      {"file", file.path()},
+      {"file_bytes", file.file_bytes()},
+      {"triangles", model.triangle_count()},
+      {"vertices", model.vertex_count},
+      {"keys", model.key_count()},
+      {"clips", json_of_clips(model)},
+      {"clusters", model.cluster_count()},
+      {"smallest_cluster_triangles", sizes.smallest},
+      {"largest_cluster_triangles", sizes.largest},
+      {"kd_nodes", model.kd_nodes.size()},
+      {"kd_refs", model.kd_refs.size()},
+      {"rest_key", model.rest_key},
+      {"rest_diagonal", model.rest_diagonal},
+      {"bounds", {{"lo", json_of(model.bounds.lo)}, {"hi", json_of(model.bounds.hi)}}},
+      {"materials", model.materials.size()},
+      {"textures", textures},
+      {"sections", sections},
+  };
+  std::cout << info.dump(2, ' ', false, Json::error_handler_t::replace) << "\n";
+}
+
+/// Names come from a file: a control character must not reach the terminal.
+std::string printable(std::string name) {
+  for (char& c : name)
+    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';
+  return name;
+}
+
+std::string point_text(const Vec3f& v) {
+  return "(" + fixed_text(v.x, 4) + ", " + fixed_text(v.y, 4) + ", " + fixed_text(v.z, 4) + ")";
+}
+
+std::string textures_text(const Model& model) {
+  std::string text = std::to_string(model.textures.size());
+  for (const Texture& texture : model.textures)
+    text += (text.find(' ') == std::string::npos ? " (" : ", ") + std::to_string(texture.width) +
+            "x" + std::to_string(texture.height);
+  return model.textures.empty() ? text : text + ")";
+}
+
+void print_facts(const MdkFile& file) {
+  const Model& model = file.model();
+  const ClusterSizes sizes = cluster_sizes(model);
+  const Clip& rest_clip = model.clips[clip_of_key(model, model.rest_key)];
+  TextTable facts(2);
+  facts.add_row({"file", file.path() + " (" + bytes_text(file.file_bytes()) + ")"});
+  facts.add_row({"triangles", grouped_text(model.triangle_count())});
+  facts.add_row({"vertices", grouped_text(model.vertex_count)});
+  facts.add_row({"keys", grouped_text(model.key_count())});
+  facts.add_row({"clusters", grouped_text(model.cluster_count()) + " (of " +
+                                 grouped_text(sizes.smallest) + " to " +
+                                 grouped_text(sizes.largest) + " triangles)"});
+  facts.add_row({"fuzzy kd-trees", grouped_text(model.kd_nodes.size()) + " nodes, " +
+                                       grouped_text(model.kd_refs.size()) + " references"});
+  facts.add_row({"rest pose", "key " + std::to_string(model.rest_key) + " (" +
+                                  printable(rest_clip.name) + " at " +
+                                  fixed_text(model.key_times[model.rest_key], 3) +
+                                  " s), diagonal " + fixed_text(model.rest_diagonal, 4)});
+  facts.add_row({"bounds", point_text(model.bounds.lo) + " to " + point_text(model.bounds.hi)});
+  facts.add_row({"materials", std::to_string(model.materials.size())});
+  facts.add_row({"textures", textures_text(model)});
+  facts.print(std::cout);
+}
+
+void print_tables(const MdkFile& file) {
+  const Model& model = file.model();
+  TextTable clips(1);
+  clips.add_row({"clip", "seconds", "keys", "first key", "last key"});
+  for (const Clip& clip : model.clips)
+    clips.add_row({printable(clip.name), fixed_text(model.clip_seconds(clip), 3),
+                   std::to_string(clip.key_count), std::to_string(clip.first_key),
+                   std::to_string(clip.first_key + clip.key_count - 1)});
+  TextTable sections(1);
+  sections.add_row({"section", "bytes"});
+  for (const MdkSectionInfo& section : file.sections())
+    sections.add_row({section.name, grouped_text(section.bytes)});
+  std::cout << "\n";
+  clips.print(std::cout);
+  std::cout << "\n";
+  sections.print(std::cout);
+}
+
+void run_info(const InfoArguments& arguments) {
+  const MachineLimits limits(arguments.machine);
+  const MdkFile file(arguments.input);
+  if (arguments.json) {
+    print_json(file);
+  } else {
+    print_facts(file);
+    print_tables(file);
+  }
+}
+
+}  // namespace
+
+CommandBody add_info_command(CLI::App& command) {
+  const auto arguments = std::make_shared<InfoArguments>();
+  command.add_option("FILE", arguments->input, "A .mdk file made by 'mdprep bake'.")->required();
+  command.add_flag("--json", arguments->json, "Print JSON (mdprep-info/1) instead of tables.");
+  add_machine_options(command, arguments->machine);
+  command.footer(
+      "Example:\n"
+      "  mdprep info hand.mdk\n"
+      "  mdprep info hand.mdk --json");
+  return [arguments] { run_info(*arguments); };
+}
+
+}  // namespace mdk

@@ -1,0 +1,236 @@
+#include "preprocess/cli/model_checks.h"
+
+#include <algorithm>
+#include <random>
+
+#include "common/base/parallel.h"
+#include "common/motion/posed_mesh.h"
+#include "preprocess/cli/number_text.h"
+
+namespace mdk {
+namespace {
+
+constexpr std::size_t kTrianglesPerChunk = 8192;
+
+std::vector<std::uint32_t> triangle_clusters(const Model& model) {
+  std::vector<std::uint32_t> owner(model.triangle_count());
+  for (std::uint32_t c = 0; c < model.cluster_count(); ++c) {
+    const Cluster& cluster = model.clusters[c];
+    std::fill_n(owner.begin() + cluster.first_triangle, cluster.triangle_count, c);
+  }
+  return owner;
+}
+
+std::string moment_text(const Model& model, const KeyInterval& at) {
+  const std::string key = "key " + std::to_string(at.key0);
+  const std::string clip = " of clip " + model.clips[clip_of_key(model, at.key0)].name;
+  return (at.key0 == at.key1 ? key : key + " + " + fixed_text(at.s, 6)) + clip;
+}
+
+Aabbd to_double(const Aabb& box) { return {mdk::to_double(box.lo), mdk::to_double(box.hi)}; }
+
+/// Failures of one kind at one moment: how many, and the first triangle.
+struct Failures {
+  std::uint64_t count = 0;
+  std::uint32_t first = 0;
+
+  void add(std::uint32_t triangle) {
+    if (count++ == 0) first = triangle;
+  }
+  void add(const Failures& later) {
+    if (count == 0) first = later.first;
+    count += later.count;
+  }
+};
+
+struct BoxFailures {
+  Failures fuzzy, world, bounds;
+
+  void add(const BoxFailures& later) {
+    fuzzy.add(later.fuzzy);
+    world.add(later.world);
+    bounds.add(later.bounds);
+  }
+};
+
+/// What holds at one moment for all triangles.
+class MomentCheck {
+ public:
+  explicit MomentCheck(const Model& model)
+      : model_(model), mesh_(model), owner_(triangle_clusters(model)) {}
+
+  BoxFailures check(const KeyInterval& at) {
+    mesh_.set_time(at);
+    maps_.resize(model_.cluster_count());
+    world_boxes_.resize(model_.cluster_count());
+    for (std::uint32_t c = 0; c < model_.cluster_count(); ++c) {
+      maps_[c] = interpolate(model_.key_maps(at.key0)[c], model_.key_maps(at.key1)[c], at.s);
+      world_boxes_[c] = cluster_world_box(model_, c, at);
+    }
+    const std::size_t chunks = (owner_.size() + kTrianglesPerChunk - 1) / kTrianglesPerChunk;
+    std::vector<BoxFailures> found(chunks);
+    parallel_chunks(owner_.size(), kTrianglesPerChunk, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t t = begin; t < end; ++t)
+        check_triangle(static_cast<std::uint32_t>(t), found[begin / kTrianglesPerChunk]);
+    });
+    BoxFailures all;
+    for (const BoxFailures& chunk : found) all.add(chunk);
+    return all;
+  }
+
+ private:
+  void check_triangle(std::uint32_t t, BoxFailures& failures) const {
+    const std::uint32_t c = owner_[t];
+    const Aabbd fuzzy_box = to_double(model_.fuzzy_boxes[t]);
+    bool in_fuzzy = true, in_world = true, in_bounds = true;
+    for (const std::uint32_t v : model_.triangles[t].v) {
+      const Vec3f& position = mesh_.positions()[v];
+      in_fuzzy = in_fuzzy && fuzzy_box.contains(maps_[c].point(mdk::to_double(position)));
+      in_world = in_world && world_boxes_[c].contains(position);
+      in_bounds = in_bounds && model_.bounds.contains(position);
+    }
+    if (!in_fuzzy) failures.fuzzy.add(t);
+    if (!in_world) failures.world.add(t);
+    if (!in_bounds) failures.bounds.add(t);
+  }
+
+  const Model& model_;
+  PosedMesh mesh_;
+  std::vector<std::uint32_t> owner_;
+  std::vector<Affine3d> maps_;
+  std::vector<Aabb> world_boxes_;
+};
+
+void record(CheckResult& result, std::uint64_t looked_at, const Failures& failures,
+            const std::string& moment) {
+  if (result.passed() && failures.count > 0)
+    result.detail = "first: triangle " + std::to_string(failures.first) + " at " + moment;
+  result.count += looked_at;
+  result.failures += failures.count;
+}
+
+/// The cell of a node that is still to be visited.
+struct Cell {
+  std::uint32_t node;
+  Aabb box;
+};
+
+/// Whether they share more than a common side.
+bool overlap_inside(const Aabb& a, const Aabb& b) {
+  return a.lo.x < b.hi.x && b.lo.x < a.hi.x && a.lo.y < b.hi.y && b.lo.y < a.hi.y &&
+         a.lo.z < b.hi.z && b.lo.z < a.hi.z;
+}
+
+/// Leaves that a triangle's box reaches into, and how many of them do not list it.
+struct LeafCount {
+  std::uint64_t leaves = 0, missing = 0;
+};
+
+LeafCount count_leaves(const KdTreeView& tree, const Aabb& box, std::uint32_t triangle) {
+  LeafCount found;
+  std::vector<Cell> open = {{0, tree.bounds}};
+  while (!open.empty()) {
+    const Cell cell = open.back();
+    open.pop_back();
+    if (!overlap_inside(cell.box, box)) continue;
+    const KdNode& node = tree.nodes[cell.node];
+    if (node.is_leaf()) {
+      const auto refs = tree.refs.subspan(node.first_ref(), node.ref_count());
+      ++found.leaves;
+      found.missing += std::find(refs.begin(), refs.end(), triangle) == refs.end();
+      continue;
+    }
+    Cell below{node.below(), cell.box}, above{node.above(), cell.box};
+    below.box.hi[node.axis()] = std::min(below.box.hi[node.axis()], node.split());
+    above.box.lo[node.axis()] = std::max(above.box.lo[node.axis()], node.split());
+    open.push_back(below);
+    open.push_back(above);
+  }
+  return found;
+}
+
+void check_tree(const Model& model, const Cluster& cluster, CheckResult& boxes,
+                CheckResult& leaves) {
+  const KdTreeView tree = model.fuzzy_tree(cluster);
+  for (std::uint32_t i = 0; i < cluster.triangle_count; ++i) {
+    const std::uint32_t t = cluster.first_triangle + i;
+    const Aabb& box = model.fuzzy_boxes[t];
+    Failures outside, unlisted;
+    if (!cluster.local_box.contains(box)) outside.add(t);
+    const LeafCount found = count_leaves(tree, box, t);
+    if (found.missing > 0 || found.leaves == 0) unlisted.add(t);
+    record(boxes, 1, outside, "any time");
+    record(leaves, std::max<std::uint64_t>(1, found.leaves), unlisted, "any time");
+  }
+}
+
+}  // namespace
+
+std::uint64_t interval_count(const Model& model) {
+  std::uint64_t count = 0;
+  for (const Clip& clip : model.clips) count += clip.key_count - 1;
+  return count;
+}
+
+std::vector<KeyInterval> random_moments(const Model& model, std::uint32_t count,
+                                        std::uint64_t seed) {
+  std::vector<std::uint32_t> starts;  // the first key of every interval
+  for (const Clip& clip : model.clips)
+    for (std::uint32_t i = 0; i + 1 < clip.key_count; ++i) starts.push_back(clip.first_key + i);
+  std::vector<KeyInterval> moments;
+  if (starts.empty()) return moments;
+  std::mt19937_64 random(seed);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    // Not std::uniform_real_distribution, whose numbers differ between libraries.
+    const double u = static_cast<double>(random() >> 11) * 0x1p-53;
+    const double place = (i + u) / count * static_cast<double>(starts.size());
+    const std::size_t interval = std::min(static_cast<std::size_t>(place), starts.size() - 1);
+    const float s = static_cast<float>(place - static_cast<double>(interval));
+    const std::uint32_t key = starts[interval];
+    moments.push_back(s > 0 && s < 1 ? KeyInterval{key, key + 1, s}
+                                     : KeyInterval{key, key + 1, 0.5f});
+  }
+  return moments;
+}
+
+std::vector<CheckResult> check_boxes(const Model& model, std::span<const KeyInterval> between,
+                                     ProgressSink& progress) {
+  const std::string when[] = {"at keys", "between keys"};
+  std::vector<CheckResult> results;
+  MomentCheck moment(model);
+  const std::size_t total = model.key_count() + between.size();
+  std::size_t done = 0;
+  const auto check_all = [&](std::size_t count, const auto& moment_at, const std::string& label) {
+    CheckResult fuzzy{"fuzzy boxes hold their triangles " + label, 0, 0, ""};
+    CheckResult world{"cluster boxes hold their triangles " + label, 0, 0, ""};
+    CheckResult bounds{"bounds hold the mesh " + label, 0, 0, ""};
+    for (std::size_t i = 0; i < count; ++i) {
+      progress.report("boxes", static_cast<double>(done++) / static_cast<double>(total));
+      const KeyInterval at = moment_at(i);
+      const BoxFailures failures = moment.check(at);
+      const std::string text = moment_text(model, at);
+      record(fuzzy, model.triangle_count(), failures.fuzzy, text);
+      record(world, model.triangle_count(), failures.world, text);
+      record(bounds, model.triangle_count(), failures.bounds, text);
+    }
+    results.insert(results.end(), {fuzzy, world, bounds});
+  };
+  check_all(
+      model.key_count(), [](std::size_t i) { return at_key(static_cast<std::uint32_t>(i)); },
+      when[0]);
+  check_all(
+      between.size(), [&](std::size_t i) { return between[i]; }, when[1]);
+  return results;
+}
+
+std::vector<CheckResult> check_trees(const Model& model, ProgressSink& progress) {
+  CheckResult boxes{"local boxes hold their fuzzy boxes", 0, 0, ""};
+  CheckResult leaves{"leaves list every triangle that reaches into them", 0, 0, ""};
+  for (std::uint32_t c = 0; c < model.cluster_count(); ++c) {
+    progress.report("trees", static_cast<double>(c) / model.cluster_count());
+    check_tree(model, model.clusters[c], boxes, leaves);
+  }
+  return {boxes, leaves};
+}
+
+}  // namespace mdk

@@ -1,0 +1,69 @@
+#include "preprocess/cli/number_text.h"
+
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+
+#include "common/base/error.h"
+
+namespace mdk {
+
+std::uint32_t parse_count(std::string_view option, std::string_view text, CountRange range) {
+  std::uint32_t value = 0;
+  const char* end = text.data() + text.size();
+  const auto [stop, problem] = std::from_chars(text.data(), end, value);
+  if (problem != std::errc{} || stop != end || value < range.lowest || value > range.highest)
+    throw Error(ErrorCode::kUsage,
+                std::string(option) + " " + std::string(text) + ": expected a whole number from " +
+                    std::to_string(range.lowest) + " to " + std::to_string(range.highest));
+  return value;
+}
+
+double parse_real(std::string_view option, std::string_view text) {
+  double value = 0;
+  const char* end = text.data() + text.size();
+  const auto [stop, problem] = std::from_chars(text.data(), end, value);
+  if (problem != std::errc{} || stop != end || !std::isfinite(value))
+    throw Error(ErrorCode::kUsage,
+                std::string(option) + " " + std::string(text) + ": expected a number");
+  return value;
+}
+
+std::vector<std::string> split(std::string_view text, char separator) {
+  std::vector<std::string> parts;
+  while (true) {
+    const std::size_t at = text.find(separator);
+    parts.emplace_back(text.substr(0, at));
+    if (at == std::string_view::npos) return parts;
+    text.remove_prefix(at + 1);
+  }
+}
+
+std::string fixed_text(double value, int decimals) {
+  char buffer[352];  // a double has at most 309 digits before the point
+  std::snprintf(buffer, sizeof buffer, "%.*f", decimals < 20 ? decimals : 20, value);
+  return buffer;
+}
+
+std::string grouped_text(std::uint64_t value) {
+  std::string digits = std::to_string(value);
+  for (std::size_t at = digits.size(); at > 3;) {
+    at -= 3;
+    digits.insert(at, 1, ',');
+  }
+  return digits;
+}
+
+std::string bytes_text(std::uint64_t bytes) {
+  if (bytes < 1024) return std::to_string(bytes) + " B";
+  static constexpr const char* kUnits[] = {"KiB", "MiB", "GiB", "TiB"};
+  double value = static_cast<double>(bytes) / 1024;
+  std::size_t unit = 0;
+  while (value >= 1024 && unit + 1 < std::size(kUnits)) {
+    value /= 1024;
+    ++unit;
+  }
+  return fixed_text(value, 1) + " " + kUnits[unit];
+}
+
+}  // namespace mdk

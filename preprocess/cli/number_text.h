@@ -1,0 +1,35 @@
+// Numbers in and out of text: strict reading of option values, and figures as people read them.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace mdk {
+
+/// Both ends belong to it.
+struct CountRange {
+  std::uint32_t lowest = 1;
+  std::uint32_t highest = 0xffffffffu;
+};
+
+/// The whole of `text` as a whole number in `range`; throws Error (kUsage) naming `option`.
+std::uint32_t parse_count(std::string_view option, std::string_view text, CountRange range);
+
+/// The whole of `text` as a finite number; throws Error (kUsage) naming `option`.
+double parse_real(std::string_view option, std::string_view text);
+
+/// The parts between separators, empty ones included.
+std::vector<std::string> split(std::string_view text, char separator);
+
+/// 12.345 with 1 decimal: "12.3".
+std::string fixed_text(double value, int decimals);
+
+/// 1234567: "1,234,567".
+std::string grouped_text(std::uint64_t value);
+
+/// 3250585: "3.1 MiB".
+std::string bytes_text(std::uint64_t bytes);
+
+}  // namespace mdk

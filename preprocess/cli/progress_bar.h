@@ -1,0 +1,64 @@
+// Progress on stderr: one line redrawn in place on a terminal, a few plain lines elsewhere. Also
+// the place where Ctrl-C takes effect, since every long stage reports here.
+#pragma once
+
+#include <iosfwd>
+#include <string>
+#include <string_view>
+
+#include "common/base/progress.h"
+#include "common/base/stopwatch.h"
+
+namespace mdk {
+
+enum class ProgressStyle {
+  kNone,
+  kLines,  ///< a line per stage and per tenth of the job, but none for what took no time
+  kBar,    ///< redrawn at most ten times a second
+};
+
+/// report() throws Interrupted after Ctrl-C, in every style. Removes its bar when it ends.
+class ProgressBar final : public ProgressSink {
+ public:
+  ProgressBar(std::ostream& out, ProgressStyle style) : out_(out), style_(style) {}
+  ~ProgressBar() override { clear(); }
+  ProgressBar(const ProgressBar&) = delete;
+  ProgressBar& operator=(const ProgressBar&) = delete;
+
+  void report(std::string_view stage, double fraction) override;
+
+  /// Makes room for a message; the next report draws the bar again.
+  void clear();
+
+ private:
+  bool due(std::string_view stage, double fraction) const;
+
+  std::ostream& out_;
+  ProgressStyle style_;
+  Stopwatch since_start_, since_drawn_;
+  std::string drawn_stage_;
+  double drawn_fraction_ = -1;  ///< before anything was drawn
+  bool bar_visible_ = false;
+};
+
+/// A part of a longer job: its 0 and 1 are `from` and `to` of the whole. The whole must outlive it.
+class ProgressPart final : public ProgressSink {
+ public:
+  ProgressPart(ProgressSink& whole, double from, double to) : whole_(whole), from_(from), to_(to) {}
+  void report(std::string_view stage, double fraction) override {
+    whole_.report(stage, from_ + (to_ - from_) * fraction);
+  }
+
+ private:
+  ProgressSink& whole_;
+  double from_, to_;
+};
+
+/// "[########------------]  42 %  decompose, 0:12 left"; `fraction` in [0, 1].
+std::string progress_bar_text(std::string_view stage, double fraction, double elapsed_seconds);
+
+/// " 42 %  decompose, 0:12 left". The estimate takes work to go on at its mean speed so far, and is
+/// left out during the first second and the first two per cent.
+std::string progress_line_text(std::string_view stage, double fraction, double elapsed_seconds);
+
+}  // namespace mdk

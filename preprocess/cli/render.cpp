@@ -1,0 +1,242 @@
+// mdprep render: frames of a .mdk file to PNG, without a display.
+#include <CLI/CLI.hpp>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "common/base/error.h"
+#include "common/base/isa.h"
+#include "common/trace/renderer.h"
+#include "formats/image_writer.h"
+#include "formats/mdk_view.h"
+#include "preprocess/cli/commands.h"
+#include "preprocess/cli/common_options.h"
+#include "preprocess/cli/interrupt.h"
+#include "preprocess/cli/key_range.h"
+#include "preprocess/cli/median.h"
+#include "preprocess/cli/number_text.h"
+#include "preprocess/cli/output_paths.h"
+#include "preprocess/cli/progress_bar.h"
+#include "preprocess/cli/text_file.h"
+#include "preprocess/cli/view_options.h"
+#include "preprocess/cli/work_per_ray.h"
+
+namespace mdk {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct RenderArguments {
+  std::string input, output, frames, time, clip, stats;
+  std::string technique = "fuzzy-kdtree";
+  ViewOptions view;
+  MachineOptions machine;
+  MessageOptions messages;
+};
+
+struct PlannedFrame {
+  KeyInterval at;
+  std::uint32_t clip = 0;
+  double seconds = 0;  ///< from the clip's start
+};
+
+PlannedFrame frame_at_key(const Model& model, std::uint32_t key) {
+  return {at_key(key), clip_of_key(model, key), model.key_times[key]};
+}
+
+std::uint32_t find_clip(const Model& model, const std::string& name) {
+  if (name.empty()) return 0;
+  std::string known;
+  for (std::uint32_t c = 0; c < model.clips.size(); ++c) {
+    if (model.clips[c].name == name) return c;
+    known += (c == 0 ? "" : ", ") + model.clips[c].name;
+  }
+  throw Error(ErrorCode::kUsage, "--clip " + name + ": no clip has this name; there are: " + known);
+}
+
+PlannedFrame frame_at_time(const Model& model, std::uint32_t clip, const std::string& text) {
+  const double seconds = parse_real("--time", text);
+  const double length = model.clip_seconds(model.clips[clip]);
+  if (!(seconds >= 0 && seconds <= length))
+    throw Error(ErrorCode::kUsage, "--time " + text + ": clip " + model.clips[clip].name +
+                                       " runs from 0 to " + fixed_text(length, 6) + " s");
+  return {locate_time(model, clip, seconds), clip, seconds};
+}
+
+/// --frames or --time or, without either, every key of the clip.
+std::vector<PlannedFrame> plan_frames(const RenderArguments& arguments, const Model& model) {
+  std::vector<PlannedFrame> frames;
+  if (!arguments.frames.empty()) {
+    for (const std::uint32_t key : parse_key_range(arguments.frames, model.key_count()))
+      frames.push_back(frame_at_key(model, key));
+    return frames;
+  }
+  const std::uint32_t clip = find_clip(model, arguments.clip);
+  if (!arguments.time.empty()) return {frame_at_time(model, clip, arguments.time)};
+  const Clip& keys = model.clips[clip];
+  for (std::uint32_t i = 0; i < keys.key_count; ++i)
+    frames.push_back(frame_at_key(model, keys.first_key + i));
+  return frames;
+}
+
+Json stats_row(const Model& model, const PlannedFrame& frame, const FrameStats& stats,
+               const FrameStats& counted) {
+  const WorkPerRay work = work_per_ray(counted.counters, counted.rays);
+  return {{"key", frame.at.key0},
+          {"clip", model.clips[frame.clip].name},
+          {"time", frame.seconds},
+          {"pose_ms", stats.pose_ms},
+          {"update_ms", stats.update_ms},
+          {"trace_ms", stats.trace_ms},
+          {"shade_ms", stats.shade_ms},
+          {"time_to_image_ms", stats.time_to_image_ms()},
+          {"prebuild_ms", stats.prebuild_ms},
+          {"rays", stats.rays},
+          {"hits", stats.hits},
+          {"node_visits_per_ray", work.node_visits},
+          {"triangle_tests_per_ray", work.triangle_tests},
+          {"clusters_per_ray", work.clusters}};
+}
+
+/// Renders and writes every frame; returns the rows of --stats.
+Json render_frames(const RenderArguments& arguments, const Model& model,
+                   const std::vector<PlannedFrame>& frames, ImageSize size) {
+  ProgressBar progress(std::cerr, progress_style(arguments.messages));
+  Renderer renderer(model, arguments.technique);
+  FrameRequest request;
+  request.camera = choose_camera(arguments.view, model.bounds, size);
+  request.width = size.width;
+  request.height = size.height;
+  request.shading = find_shading(arguments.view.shading);
+
+  Json rows = Json::array();
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    progress.report("render", static_cast<double>(i) / static_cast<double>(frames.size()));
+    request.at = frames[i].at;
+    request.counting = Counting::kOff;
+    const FrameStats stats = renderer.render(request);
+    const std::string path = numbered_path(arguments.output, frames[i].at.key0);
+    write_png(path, size.width, size.height, renderer.pixels());
+    if (arguments.messages.verbose) {
+      progress.clear();
+      std::cerr << "mdprep: " << path << ": " << fixed_text(stats.time_to_image_ms(), 2)
+                << " ms to the image\n";
+    }
+    request.counting = Counting::kOn;  // a second time, since counting slows a frame down
+    const FrameStats counted = arguments.stats.empty() ? stats : renderer.trace(request);
+    rows.push_back(stats_row(model, frames[i], stats, counted));
+  }
+  return rows;
+}
+
+void print_summary(const RenderArguments& arguments, const Json& rows) {
+  std::vector<double> times;
+  for (const Json& row : rows) times.push_back(row["time_to_image_ms"]);
+  std::cerr << arguments.output << ": " << rows.size() << (rows.size() == 1 ? " frame" : " frames")
+            << ", " << fixed_text(median(times), 2) << " ms to the image (median, "
+            << arguments.technique << ", " << thread_count()
+            << (thread_count() == 1 ? " thread, " : " threads, ") << isa_in_use() << ")\n";
+}
+
+void check_outputs(const RenderArguments& arguments, const std::vector<PlannedFrame>& frames) {
+  if (frames.size() > 1 && !has_number_place(arguments.output))
+    throw Error(
+        ErrorCode::kUsage,
+        arguments.output + ": " + std::to_string(frames.size()) +
+            " frames need a place for their number, as in out_####.png; or choose one frame "
+            "with --frames or --time");
+  const std::string outputs[] = {numbered_path(arguments.output, frames.front().at.key0),
+                                 arguments.stats};
+  require_distinct_files(arguments.input, outputs);
+  require_writable_place(outputs[0]);
+  if (!arguments.stats.empty()) require_writable_place(arguments.stats);
+}
+
+void run_render(const RenderArguments& arguments) {
+  const MachineLimits limits(arguments.machine);
+  progress_style(arguments.messages);  // refuse wrong words before any file is opened
+  find_technique(arguments.technique);
+  find_shading(arguments.view.shading);
+  const ImageSize size = parse_image_size(arguments.view.size);
+  if (!arguments.view.camera.empty()) parse_camera(arguments.view.camera);
+
+  const MdkFile file(arguments.input);
+  const Model& model = file.model();
+  const std::vector<PlannedFrame> frames = plan_frames(arguments, model);
+  check_outputs(arguments, frames);
+  defer_interrupts();
+  const Json rows = render_frames(arguments, model, frames, size);
+  if (!arguments.stats.empty()) {
+    const Json report = {{"schema", "mdprep-render/1"},
+                         {"file", arguments.input},
+                         {"isa", isa_in_use()},
+                         {"threads", thread_count()},
+                         {"width", size.width},
+                         {"height", size.height},
+                         {"technique", arguments.technique},
+                         {"shading", arguments.view.shading},
+                         {"frames", rows}};
+    write_text_file(arguments.stats,
+                    report.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+  }
+  if (!arguments.messages.quiet) print_summary(arguments, rows);
+}
+
+void add_frame_options(CLI::App& command, RenderArguments& arguments) {
+  CLI::Option* frames =
+      command
+          .add_option("--frames", arguments.frames,
+                      "Keys from A to B, both included, every S-th (default step: 1). Keys count\n"
+                      "from 0 through all clips; 'mdprep info' lists them. Without --frames and\n"
+                      "--time: every key of the clip.")
+          ->type_name("A:B[:S]");
+  CLI::Option* time =
+      command
+          .add_option("--time", arguments.time,
+                      "One frame at this time, in seconds from the start of the clip. Its number\n"
+                      "is that of the key before it.")
+          ->type_name("T");
+  CLI::Option* clip = command
+                          .add_option("--clip", arguments.clip,
+                                      "The clip to render or that --time counts in (default: the "
+                                      "first).")
+                          ->type_name("NAME");
+  frames->excludes(time);
+  frames->excludes(clip);
+}
+
+}  // namespace
+
+CommandBody add_render_command(CLI::App& command) {
+  const auto arguments = std::make_shared<RenderArguments>();
+  command.add_option("FILE", arguments->input, "A .mdk file made by 'mdprep bake'.")->required();
+  command
+      .add_option("-o,--output", arguments->output,
+                  "The PNG to write. A run of # becomes the number of the key, padded with zeros;\n"
+                  "more than one frame needs it.")
+      ->required()
+      ->type_name("out_####.png");
+  add_frame_options(command, *arguments);
+  command
+      .add_option("--technique", arguments->technique,
+                  "One of " + technique_ids() +
+                      "\n(default: fuzzy-kdtree). The picture is the "
+                      "same with each.")
+      ->type_name("ID");
+  add_view_options(command, arguments->view);
+  command
+      .add_option("--stats", arguments->stats,
+                  "Write times in ms and work per ray of every frame as JSON (mdprep-render/1).")
+      ->type_name("FILE");
+  add_machine_options(command, arguments->machine);
+  add_message_options(command, arguments->messages);
+  add_verbose_option(command, arguments->messages);
+  command.footer(
+      "Example:\n"
+      "  mdprep render hand.mdk -o hand_####.png --frames 0:29:2 --size 800x600\n"
+      "  mdprep render fox.mdk -o fox.png --clip Run --time 0.4 --camera \"0 80 250 0 40 0 0 1 0 "
+      "45\"");
+  return [arguments] { run_render(*arguments); };
+}
+
+}  // namespace mdk

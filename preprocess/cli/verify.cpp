@@ -1,0 +1,190 @@
+// mdprep verify: everything a renderer relies on in a .mdk file, checked the slow way.
+#include <CLI/CLI.hpp>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "common/base/error.h"
+#include "formats/mdk_view.h"
+#include "preprocess/cli/check_result.h"
+#include "preprocess/cli/commands.h"
+#include "preprocess/cli/common_options.h"
+#include "preprocess/cli/hit_checks.h"
+#include "preprocess/cli/interrupt.h"
+#include "preprocess/cli/model_checks.h"
+#include "preprocess/cli/number_text.h"
+#include "preprocess/cli/progress_bar.h"
+#include "preprocess/cli/source_check.h"
+#include "preprocess/cli/source_reader.h"
+#include "preprocess/cli/text_table.h"
+
+namespace mdk {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr CountRange kSampleRange{1, 1000000};
+constexpr std::uint32_t kFewestSamples = 200;
+constexpr std::uint32_t kHitMoments = 4;
+
+struct VerifyArguments {
+  std::string input, source_path;
+  std::string samples = "auto";
+  std::string seed = "1";
+  bool json = false;
+  SourceOptions source;
+  MachineOptions machine;
+  MessageOptions messages;
+};
+
+struct VerifyReport {
+  std::vector<CheckResult> checks;
+  std::uint64_t seed = 0;
+  std::uint32_t samples = 0;
+  std::uint64_t hit_mismatches = 0;
+
+  void add(const std::vector<CheckResult>& results) {
+    checks.insert(checks.end(), results.begin(), results.end());
+  }
+  std::uint64_t failed_checks() const {
+    std::uint64_t failed = 0;
+    for (const CheckResult& check : checks) failed += !check.passed();
+    return failed;
+  }
+};
+
+std::uint32_t parse_samples(const std::string& text, const Model& model) {
+  if (text != "auto") return parse_count("--samples", text, kSampleRange);
+  const std::uint64_t wanted = std::max<std::uint64_t>(kFewestSamples, interval_count(model));
+  return static_cast<std::uint32_t>(std::min<std::uint64_t>(wanted, kSampleRange.highest));
+}
+
+/// Opening has already checked offsets, links and ranges; this adds every byte of the sections.
+CheckResult check_bytes(const MdkFile& file) {
+  CheckResult result{"sections have their checksums", file.sections().size(), 0, ""};
+  try {
+    file.verify_checksums();
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::kBadInput) throw;
+    result.failures = 1;
+    result.detail = error.what();
+  }
+  return result;
+}
+
+VerifyReport verify_file(const MdkFile& file, const VerifyArguments& arguments,
+                         ProgressSink& progress) {
+  const Model& model = file.model();
+  VerifyReport report;
+  report.seed = parse_count("--seed", arguments.seed, {0, 0xffffffffu});
+  report.samples = parse_samples(arguments.samples, model);
+  progress.report("checksums", 0);
+  report.add({{"offsets, links and ranges are sound", file.sections().size(), 0, ""}});
+  report.add({check_bytes(file)});
+
+  const std::vector<KeyInterval> between = random_moments(model, report.samples, report.seed);
+  ProgressPart boxes(progress, 0.05, 0.4), trees(progress, 0.4, 0.45), hits(progress, 0.45, 0.95);
+  report.add(check_boxes(model, between, boxes));
+  report.add(check_trees(model, trees));
+  const std::vector<CheckResult> hit_results =
+      check_hits(model, {}, random_moments(model, kHitMoments, report.seed + 1), hits);
+  for (const CheckResult& result : hit_results) report.hit_mismatches += result.failures;
+  report.add(hit_results);
+
+  if (!arguments.source_path.empty()) {
+    ProgressPart reading(progress, 0.95, 1);
+    report.add(check_source(
+        model, read_source(arguments.source_path, arguments.source, reading).sequence));
+  }
+  return report;
+}
+
+void print_json(const VerifyReport& report, const std::string& file) {
+  Json checks = Json::array();
+  for (const CheckResult& check : report.checks)
+    checks.push_back({{"name", check.name},
+                      {"count", check.count},
+                      {"failures", check.failures},
+                      {"detail", check.detail}});
+  const Json json = {{"schema", "mdprep-verify/1"},
+                     {"file", file},
+                     {"seed", report.seed},
+                     {"samples", report.samples},
+                     {"checks", checks},
+                     {"hit_mismatches", report.hit_mismatches},
+                     {"ok", report.failed_checks() == 0}};
+  std::cout << json.dump(2, ' ', false, Json::error_handler_t::replace) << "\n";
+}
+
+void print_table(const VerifyReport& report) {
+  TextTable table(2);
+  for (const CheckResult& check : report.checks)
+    table.add_row({check.passed() ? "ok" : "FAILED", check.name, grouped_text(check.count),
+                   check.passed() ? "" : grouped_text(check.failures) + " failures", check.detail});
+  table.print(std::cout);
+  std::cout << report.samples << " random times, seed " << report.seed << "\n";
+  if (report.failed_checks() == 0) {
+    std::cout << "ok\n";
+  } else {
+    std::cout << report.failed_checks() << " of " << report.checks.size() << " checks failed\n";
+  }
+}
+
+void run_verify(const VerifyArguments& arguments) {
+  const MachineLimits limits(arguments.machine);
+  ProgressBar progress(std::cerr, progress_style(arguments.messages));
+  parse_source_options(arguments.source);
+  parse_count("--seed", arguments.seed, {0, 0xffffffffu});
+  if (arguments.samples != "auto") parse_count("--samples", arguments.samples, kSampleRange);
+  if (!arguments.source_path.empty()) require_known_extension(arguments.source_path);
+  defer_interrupts();
+
+  const MdkFile file(arguments.input);
+  const VerifyReport report = verify_file(file, arguments, progress);
+  progress.clear();
+  if (arguments.json) {
+    print_json(report, arguments.input);
+  } else {
+    print_table(report);
+  }
+  if (report.failed_checks() > 0)
+    throw bad_input(arguments.input, std::to_string(report.failed_checks()) + " of " +
+                                         std::to_string(report.checks.size()) +
+                                         " checks failed; bake it again");
+}
+
+}  // namespace
+
+CommandBody add_verify_command(CLI::App& command) {
+  const auto arguments = std::make_shared<VerifyArguments>();
+  command.add_option("FILE", arguments->input, "A .mdk file made by 'mdprep bake'.")->required();
+  CLI::Option* source =
+      command
+          .add_option("--source", arguments->source_path,
+                      "Read the source again and compare clips, triangles and the position of\n"
+                      "every corner at every key. Give the bake's --clips and --fps, too.")
+          ->type_name("INPUT");
+  add_source_options(command, arguments->source);
+  command.get_option("--clips")->needs(source);
+  command.get_option("--fps")->needs(source);
+  command
+      .add_option("--samples", arguments->samples,
+                  "How many random times between keys to check boxes at, spread over all\n"
+                  "intervals, 1 to 1000000 (default: 200, or one per interval where there are\n"
+                  "more).")
+      ->type_name("auto|N");
+  command
+      .add_option("--seed", arguments->seed,
+                  "Chooses the random times, 0 to 4294967295 (default: 1).")
+      ->type_name("N");
+  command.add_flag("--json", arguments->json, "Print JSON (mdprep-verify/1) instead of a table.");
+  add_machine_options(command, arguments->machine);
+  add_message_options(command, arguments->messages);
+  command.footer(
+      "Example:\n"
+      "  mdprep verify hand.mdk --source hand.glb\n"
+      "  mdprep verify fox.mdk --samples 10000 --seed 7 --json");
+  return [arguments] { run_verify(*arguments); };
+}
+
+}  // namespace mdk
