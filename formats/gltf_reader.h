@@ -21,12 +21,10 @@ struct GltfResult {
 };
 
 /// Everything visible in the default scene becomes one mesh: skins, morph targets, animated nodes,
-/// static parts. Each animation becomes a clip whose keys are sampled at start + i / fps, and at its
-/// end; a file without animations becomes one clip with one key. World space, +y up, metres, as in
-/// the file.
-/// Throws Error: kIo (cannot read), kBadInput (broken, or needs a feature that is named), kUsage (no
-/// clip of such a name; lists those there are), kOverLimit.
-GltfResult read_gltf(const std::string& path, const GltfOptions& options,
-                     ProgressSink& progress);
+/// static parts. Each animation becomes a clip whose keys are sampled at start + i / fps, and at
+/// its end; a file without animations becomes one clip with one key. World space, +y up, metres, as
+/// in the file. Throws Error: kIo (cannot read), kBadInput (broken, or needs a feature that is
+/// named), kUsage (no clip of such a name; lists those there are), kOverLimit.
+GltfResult read_gltf(const std::string& path, const GltfOptions& options, ProgressSink& progress);
 
 }  // namespace mdk

@@ -1,0 +1,403 @@
+// tinygltf parses the JSON, takes the GLB apart and decodes data URIs; everything it hands over is
+// turned into checked structs here. The schema check before it has settled types and indices.
+#include "formats/gltf_document.h"
+
+#include <tiny_gltf.h>
+
+#include <algorithm>
+#include <cmath>
+#include <exception>
+#include <limits>
+#include <utility>
+
+#include "common/base/error.h"
+#include "formats/gltf_checks.h"
+#include "formats/gltf_schema.h"
+
+namespace mdk::gltf {
+namespace {
+
+// An accessor without bytes is free to claim any length, so its length has a limit of its own.
+constexpr std::size_t kMaxZeroElements = std::size_t{1} << 24;
+
+/// What tinygltf's file callbacks share: they serve the buffers of the schema, in order, and
+/// nothing else, so that no other file is ever opened.
+struct BufferFiles {
+  const std::string& path;
+  const std::vector<ExternalBuffer>& wanted;
+  std::vector<std::string>& dependencies;
+  std::size_t next = 0;
+  std::exception_ptr failure;
+};
+
+bool buffer_wanted(const std::string&, void* user) {
+  const auto& files = *static_cast<BufferFiles*>(user);
+  return files.next < files.wanted.size();
+}
+
+std::string same_name(const std::string& name, void*) { return name; }
+
+bool read_buffer(std::vector<unsigned char>* out, std::string*, const std::string&, void* user) {
+  auto& files = *static_cast<BufferFiles*>(user);
+  const ExternalBuffer& buffer = files.wanted[files.next++];
+  try {
+    const std::string file = resolve_uri(files.path, buffer.uri);
+    *out = read_whole_file(file);
+    files.dependencies.push_back(file);
+    if (out->size() < buffer.bytes)
+      throw bad_input(file, "holds " + std::to_string(out->size()) + " bytes where " +
+                                std::to_string(buffer.bytes) + " are needed; it may be cut short");
+    out->resize(buffer.bytes);
+    return true;
+  } catch (...) {
+    files.failure = std::current_exception();
+    return false;
+  }
+}
+
+bool no_writing(std::string*, const std::string&, const std::vector<unsigned char>&, void*) {
+  return false;
+}
+
+/// Keeps a data URI's bytes as they are. Images in buffer views are found through their view later.
+bool keep_encoded(tinygltf::Image* image, const int, std::string*, std::string*, int, int,
+                  const unsigned char* bytes, int size, void*) {
+  if (image->bufferView < 0 && size > 0) image->image.assign(bytes, bytes + size);
+  return true;
+}
+
+tinygltf::Model parse(const Bytes& bytes, BufferFiles& files) {
+  tinygltf::TinyGLTF loader;
+  loader.SetImageLoader(keep_encoded, nullptr);
+  loader.SetFsCallbacks({buffer_wanted, same_name, read_buffer, no_writing, &files});
+  tinygltf::Model model;
+  std::string error, warning;
+  const auto size = static_cast<unsigned int>(bytes.size());
+  bool loaded = false;
+  try {
+    loaded =
+        is_glb(bytes)
+            ? loader.LoadBinaryFromMemory(&model, &error, &warning, bytes.data(), size, "")
+            : loader.LoadASCIIFromString(&model, &error, &warning,
+                                         reinterpret_cast<const char*>(bytes.data()), size, "");
+  } catch (const std::exception&) {
+    error = "its parts do not fit together";
+  }
+  if (files.failure) std::rethrow_exception(files.failure);
+  if (!loaded) {
+    const std::string first = error.substr(0, std::min<std::size_t>(error.find('\n'), 200));
+    throw bad_input(files.path, "is not usable glTF (" + first + ")");
+  }
+  return model;
+}
+
+class Converter {
+ public:
+  Converter(tinygltf::Model& model, Document& document) : model_(model), document_(document) {}
+
+  void run() {
+    for (tinygltf::Buffer& buffer : model_.buffers)
+      document_.buffers.push_back(std::move(buffer.data));
+    for (std::size_t i = 0; i < model_.accessors.size(); ++i) convert_accessor(i);
+    for (std::size_t i = 0; i < model_.meshes.size(); ++i) convert_mesh(i);
+    convert_nodes();
+    for (const tinygltf::Skin& skin : model_.skins)
+      document_.skins.push_back({skin.joints, skin.inverseBindMatrices});
+    for (std::size_t i = 0; i < model_.animations.size(); ++i) convert_animation(i);
+    for (tinygltf::Image& image : model_.images) convert_image(image);
+    for (const tinygltf::Material& material : model_.materials) convert_material(material);
+    check_links(document_);
+  }
+
+ private:
+  [[noreturn]] void fail(const char* what, std::size_t number, const std::string& sentence) const {
+    throw bad_input(document_.path, what + (" " + std::to_string(number)) + " " + sentence);
+  }
+
+  std::span<const unsigned char> view_bytes(int view) const {
+    const tinygltf::BufferView& v = model_.bufferViews[static_cast<std::size_t>(view)];
+    return std::span<const unsigned char>(document_.buffers[static_cast<std::size_t>(v.buffer)])
+        .subspan(v.byteOffset, v.byteLength);
+  }
+
+  ComponentType component_type(int type, std::size_t accessor) const {
+    switch (type) {
+      case TINYGLTF_COMPONENT_TYPE_BYTE:
+        return ComponentType::kInt8;
+      case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
+        return ComponentType::kUint8;
+      case TINYGLTF_COMPONENT_TYPE_SHORT:
+        return ComponentType::kInt16;
+      case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
+        return ComponentType::kUint16;
+      case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
+        return ComponentType::kUint32;
+      case TINYGLTF_COMPONENT_TYPE_FLOAT:
+        return ComponentType::kFloat32;
+      default:
+        fail("accessor", accessor, "has an unknown componentType");
+    }
+  }
+
+  void convert_accessor(std::size_t i) {
+    const tinygltf::Accessor& from = model_.accessors[i];
+    Accessor a;
+    a.count = from.count;
+    a.type = component_type(from.componentType, i);
+    a.components = tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(from.type));
+    a.normalized = from.normalized;
+    const std::size_t element = component_bytes(a.type) * static_cast<std::size_t>(a.components);
+    a.stride = element;
+    if (from.bufferView >= 0) {
+      const std::span<const unsigned char> bytes = view_bytes(from.bufferView);
+      const std::size_t stride =
+          model_.bufferViews[static_cast<std::size_t>(from.bufferView)].byteStride;
+      if (stride != 0) a.stride = stride;
+      if (a.stride < element) fail("accessor", i, "has elements wider than their stride");
+      if (from.byteOffset > bytes.size() || element > bytes.size() - from.byteOffset ||
+          a.count - 1 > (bytes.size() - from.byteOffset - element) / a.stride)
+        fail("accessor", i, "reaches past its buffer view");
+      a.data = bytes.data() + from.byteOffset;
+    } else if (a.count > kMaxZeroElements) {
+      fail("accessor", i, "has no data for " + std::to_string(a.count) + " elements");
+    }
+    if (from.sparse.isSparse) convert_sparse(from, i, element, a);
+    document_.accessors.push_back(a);
+  }
+
+  void convert_sparse(const tinygltf::Accessor& from, std::size_t i, std::size_t element,
+                      Accessor& a) const {
+    a.sparse_count = static_cast<std::size_t>(from.sparse.count);
+    a.sparse_index_type = component_type(from.sparse.indices.componentType, i);
+    if (a.sparse_count > a.count) fail("accessor", i, "replaces more elements than it has");
+    if (a.sparse_index_type != ComponentType::kUint8 &&
+        a.sparse_index_type != ComponentType::kUint16 &&
+        a.sparse_index_type != ComponentType::kUint32)
+      fail("accessor", i, "has sparse indices that are not unsigned integers");
+    const auto part = [&](int view, int offset, std::size_t width) {
+      const std::span<const unsigned char> bytes = view_bytes(view);
+      const auto start = static_cast<std::size_t>(offset);
+      if (start > bytes.size() || a.sparse_count > (bytes.size() - start) / width)
+        fail("accessor", i, "has sparse data that reaches past its buffer view");
+      return bytes.data() + start;
+    };
+    a.sparse_indices = part(from.sparse.indices.bufferView, from.sparse.indices.byteOffset,
+                            component_bytes(a.sparse_index_type));
+    a.sparse_values = part(from.sparse.values.bufferView, from.sparse.values.byteOffset, element);
+  }
+
+  void convert_mesh(std::size_t m) {
+    const tinygltf::Mesh& from = model_.meshes[m];
+    Mesh mesh;
+    mesh.weights = from.weights;
+    for (const tinygltf::Primitive& p : from.primitives) {
+      mesh.primitives.push_back(convert_primitive(p, m));
+      if (from.weights.empty()) mesh.weights.resize(mesh.primitives[0].target_offsets.size(), 0.0);
+    }
+    document_.meshes.push_back(std::move(mesh));
+  }
+
+  Primitive convert_primitive(const tinygltf::Primitive& from, std::size_t mesh) const {
+    const auto role = [](const std::map<std::string, int>& attributes, const std::string& name) {
+      const auto it = attributes.find(name);
+      return it == attributes.end() ? kNone : it->second;
+    };
+    const auto sets = [&](const std::string& name) {
+      std::vector<int> all;
+      for (int a; (a = role(from.attributes, name + std::to_string(all.size()))) != kNone;)
+        all.push_back(a);
+      return all;
+    };
+    Primitive p;
+    p.mode = static_cast<PrimitiveMode>(from.mode);
+    p.indices = from.indices;
+    p.material = from.material;
+    p.positions = role(from.attributes, "POSITION");
+    p.normals = role(from.attributes, "NORMAL");
+    p.colors = role(from.attributes, "COLOR_0");
+    p.texcoords = sets("TEXCOORD_");
+    p.joints = sets("JOINTS_");
+    p.weights = sets("WEIGHTS_");
+    if (p.joints.size() != p.weights.size())
+      fail("mesh", mesh, "has joints without weights or weights without joints");
+    for (const auto& target : from.targets) p.target_offsets.push_back(role(target, "POSITION"));
+    return p;
+  }
+
+  void convert_nodes() {
+    std::vector<std::vector<int>> children;
+    for (std::size_t i = 0; i < model_.nodes.size(); ++i) {
+      const tinygltf::Node& from = model_.nodes[i];
+      Node node;
+      node.mesh = from.mesh;
+      node.skin = from.skin;
+      node.weights = from.weights;
+      if (node.mesh != kNone && node.weights.empty())
+        node.weights = document_.meshes[static_cast<std::size_t>(node.mesh)].weights;
+      const auto vector = [](const std::vector<double>& v) { return Vec3d{v[0], v[1], v[2]}; };
+      const std::vector<double>& q = from.rotation;
+      if (!from.translation.empty()) node.translation = vector(from.translation);
+      if (!from.scale.empty()) node.scale = vector(from.scale);
+      if (!q.empty()) node.rotation = normalized(Quaternion{q[0], q[1], q[2], q[3]});
+      if (!from.matrix.empty()) convert_matrix(from.matrix, i, node);
+      document_.nodes.push_back(std::move(node));
+      children.push_back(from.children);
+    }
+    order_nodes(document_, children);
+    find_visible_nodes(document_, scene_roots());
+  }
+
+  void convert_matrix(const std::vector<double>& columns, std::size_t number, Node& node) const {
+    constexpr double kTolerance = 1e-4;
+    const double last_row[4] = {columns[3], columns[7], columns[11], columns[15] - 1};
+    for (double entry : last_row)
+      if (!(std::abs(entry) < kTolerance)) fail("node", number, "has a matrix with perspective");
+    node.has_matrix = true;
+    for (std::size_t row = 0; row < 3; ++row)
+      for (std::size_t column = 0; column < 4; ++column)
+        node.matrix.m[row][column] = columns[column * 4 + row];
+  }
+
+  std::vector<int> scene_roots() const {
+    if (!model_.scenes.empty())
+      return model_.scenes[static_cast<std::size_t>(std::max(0, model_.defaultScene))].nodes;
+    std::vector<int> roots;
+    for (std::size_t i = 0; i < document_.nodes.size(); ++i)
+      if (document_.nodes[i].parent == kNone) roots.push_back(static_cast<int>(i));
+    return roots;
+  }
+
+  /// Channels that move nothing known (an extension's, or without a node) are dropped.
+  void convert_animation(std::size_t number) {
+    const tinygltf::Animation& from = model_.animations[number];
+    Animation animation{from.name, {}};
+    for (const tinygltf::AnimationChannel& c : from.channels) {
+      const tinygltf::AnimationSampler& sampler =
+          from.samplers[static_cast<std::size_t>(c.sampler)];
+      Channel channel;
+      channel.node = c.target_node;
+      channel.input = sampler.input;
+      channel.output = sampler.output;
+      if (c.target_path == "translation")
+        channel.path = TrackPath::kTranslation;
+      else if (c.target_path == "rotation")
+        channel.path = TrackPath::kRotation;
+      else if (c.target_path == "scale")
+        channel.path = TrackPath::kScale;
+      else if (c.target_path == "weights")
+        channel.path = TrackPath::kWeights;
+      else
+        continue;
+      if (sampler.interpolation == "STEP")
+        channel.interpolation = Interpolation::kStep;
+      else if (sampler.interpolation == "CUBICSPLINE")
+        channel.interpolation = Interpolation::kCubicSpline;
+      else if (sampler.interpolation != "LINEAR")
+        fail("animation", number, "has an unknown interpolation");
+      if (channel.node != kNone) animation.channels.push_back(channel);
+    }
+    document_.animations.push_back(std::move(animation));
+  }
+
+  void convert_image(tinygltf::Image& from) {
+    ImageSource image;
+    image.uri = from.uri;
+    if (from.bufferView >= 0) image.bytes = view_bytes(from.bufferView);
+    if (!from.image.empty()) {
+      document_.embedded_images.push_back(std::move(from.image));
+      image.bytes = document_.embedded_images.back();
+    }
+    document_.images.push_back(std::move(image));
+  }
+
+  void convert_material(const tinygltf::Material& from) {
+    MaterialSource material;
+    const tinygltf::PbrMetallicRoughness& pbr = from.pbrMetallicRoughness;
+    for (std::size_t i = 0; i < 4; ++i)
+      material.material.base_color[i] =
+          static_cast<float>(std::clamp(pbr.baseColorFactor[i], 0.0, 1.0));
+    if (from.extensions.contains("KHR_materials_unlit")) material.material.flags = kMaterialUnlit;
+    if (pbr.baseColorTexture.index >= 0) {
+      const tinygltf::Texture& texture =
+          model_.textures[static_cast<std::size_t>(pbr.baseColorTexture.index)];
+      material.image = texture.source;
+      material.texcoord_set = pbr.baseColorTexture.texCoord;
+      if (texture.sampler >= 0) {
+        const auto& sampler = model_.samplers[static_cast<std::size_t>(texture.sampler)];
+        material.material.wrap_u = wrap(sampler.wrapS);
+        material.material.wrap_v = wrap(sampler.wrapT);
+      }
+      convert_texture_transform(pbr.baseColorTexture, material);
+    }
+    document_.materials.push_back(material);
+  }
+
+  static TextureWrap wrap(int mode) {
+    if (mode == TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE) return TextureWrap::kClamp;
+    if (mode == TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT) return TextureWrap::kMirror;
+    return TextureWrap::kRepeat;
+  }
+
+  /// Offset after rotation after scale. v points down, so counter-clockwise is (u, v) -> (v, -u).
+  static void convert_texture_transform(const tinygltf::TextureInfo& info,
+                                        MaterialSource& material) {
+    const auto it = info.extensions.find("KHR_texture_transform");
+    if (it == info.extensions.end()) return;
+    const tinygltf::Value& transform = it->second;
+    const auto pair_or = [&](const char* key, double fallback) {
+      std::pair<double, double> p{fallback, fallback};
+      if (transform.Has(key)) {
+        p.first = transform.Get(key).Get(0).GetNumberAsDouble();
+        p.second = transform.Get(key).Get(1).GetNumberAsDouble();
+      }
+      return p;
+    };
+    const auto [offset_u, offset_v] = pair_or("offset", 0);
+    const auto [scale_u, scale_v] = pair_or("scale", 1);
+    const double angle =
+        transform.Has("rotation") ? transform.Get("rotation").GetNumberAsDouble() : 0.0;
+    const double c = std::cos(angle), s = std::sin(angle);
+    material.u_row = {c * scale_u, s * scale_v, offset_u};
+    material.v_row = {-s * scale_u, c * scale_v, offset_v};
+    if (transform.Has("texCoord"))
+      material.texcoord_set = transform.Get("texCoord").GetNumberAsInt();
+  }
+
+  tinygltf::Model& model_;
+  Document& document_;
+};
+
+}  // namespace
+
+std::size_t component_bytes(ComponentType type) {
+  switch (type) {
+    case ComponentType::kInt8:
+    case ComponentType::kUint8:
+      return 1;
+    case ComponentType::kInt16:
+    case ComponentType::kUint16:
+      return 2;
+    default:
+      return 4;
+  }
+}
+
+void Notes::add(const std::string& sentence) {
+  if (std::ranges::find(sentences_, sentence) == sentences_.end()) sentences_.push_back(sentence);
+}
+
+Document load_document(const std::string& path, Notes& notes) {
+  Document document;
+  document.path = path;
+  const Bytes bytes = read_whole_file(path);
+  document.dependencies.push_back(path);
+  const SchemaSummary schema = check_schema(path, json_text(path, bytes));
+  for (const std::string& extension : schema.ignored_extensions)
+    notes.add("the extension " + extension + " is left out");
+  BufferFiles files{path, schema.external_buffers, document.dependencies, 0, nullptr};
+  tinygltf::Model model = parse(bytes, files);
+  Converter(model, document).run();
+  return document;
+}
+
+}  // namespace mdk::gltf

@@ -1,0 +1,203 @@
+// Decode each mesh once, list who shows it, sample every key of every clip, then join the vertices
+// that always move together.
+#include "formats/gltf_reader.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <new>
+#include <utility>
+
+#include "common/base/error.h"
+#include "common/base/parallel.h"
+#include "formats/gltf_animation.h"
+#include "formats/gltf_appearance.h"
+#include "formats/gltf_document.h"
+#include "formats/gltf_geometry.h"
+#include "formats/gltf_pose.h"
+
+namespace mdk {
+namespace {
+
+using namespace gltf;
+
+constexpr std::size_t kMaxVertices = std::size_t{1} << 27;
+constexpr std::size_t kMaxCorners = std::size_t{1} << 29;
+constexpr std::size_t kMaxPositionBytes = std::size_t{16} << 30;
+constexpr std::size_t kKeysPerChunk = 2;
+constexpr std::size_t kKeysPerReport = 32;
+
+Error too_large(const std::string& path, const std::string& what) {
+  return {ErrorCode::kOverLimit, path + ": shows " + what + " in all, more than can be held"};
+}
+
+/// What the visible nodes unfold to, before anything is decoded: nodes may share meshes, and meshes
+/// accessors, so that a small file can ask for a lot.
+void check_extent(const Document& document) {
+  std::size_t vertices = 0, corners = 0;
+  for (int n : document.visible_nodes) {
+    const int mesh = document.nodes[static_cast<std::size_t>(n)].mesh;
+    for (const Primitive& p : document.meshes[static_cast<std::size_t>(mesh)].primitives) {
+      if (p.positions == kNone) continue;
+      const std::size_t v = document.accessors[static_cast<std::size_t>(p.positions)].count;
+      const std::size_t i =
+          p.indices == kNone ? v : document.accessors[static_cast<std::size_t>(p.indices)].count;
+      vertices += v;
+      corners += p.mode == PrimitiveMode::kTriangles ? i : 3 * i;
+      if (vertices > kMaxVertices) throw too_large(document.path, "over 134 million vertices");
+      if (corners > kMaxCorners) throw too_large(document.path, "over 178 million triangles");
+    }
+  }
+}
+
+/// Everything that is shown: instances and the geometry they point at.
+struct Scene {
+  std::map<int, MeshGeometry> meshes;
+  std::vector<SkinBinding> skins;
+  std::vector<Instance> instances;
+};
+
+Scene read_scene(const Document& document, Notes& notes) {
+  check_extent(document);
+  Scene scene;
+  scene.skins = read_skins(document);
+  for (int n : document.visible_nodes) {
+    const Node& node = document.nodes[static_cast<std::size_t>(n)];
+    if (!scene.meshes.contains(node.mesh))
+      scene.meshes.emplace(node.mesh, read_mesh(document, node.mesh, notes));
+    for (const PrimitiveGeometry& geometry : scene.meshes.at(node.mesh).primitives) {
+      Instance instance{&geometry, n, geometry.first_influence.empty() ? kNone : node.skin};
+      if (instance.skin != kNone &&
+          geometry.joint_count > scene.skins[static_cast<std::size_t>(node.skin)].joints.size())
+        throw bad_input(document.path, "mesh " + std::to_string(node.mesh) + " refers to joint " +
+                                           std::to_string(geometry.joint_count - 1) +
+                                           ", which skin " + std::to_string(node.skin) +
+                                           " does not have");
+      scene.instances.push_back(instance);
+    }
+  }
+  if (scene.instances.empty())
+    throw bad_input(document.path, "shows no triangles in its default scene");
+  return scene;
+}
+
+/// Joint maps of one instance; none without a skin.
+std::vector<Affine3d> joints_of(const Scene& scene, const Instance& instance,
+                                const NodePose& pose) {
+  if (instance.skin == kNone) return {};
+  return pose_joints(scene.skins[static_cast<std::size_t>(instance.skin)], pose);
+}
+
+/// Triangles, appearance and smoothing groups; mirrored instances are turned inside out again.
+std::vector<std::uint64_t> assemble(Document& document, const Scene& scene, const NodePose& pose,
+                                    Notes& notes, PoseSequence& sequence) {
+  AppearanceBuilder appearance(document, notes);
+  std::vector<std::uint64_t> groups;
+  for (const Instance& instance : scene.instances) {
+    const PrimitiveGeometry& geometry = *instance.geometry;
+    std::vector<Triangle> triangles = geometry.triangles;
+    if (is_mirrored(instance, pose, joints_of(scene, instance, pose)))
+      for (Triangle& t : triangles) std::swap(t.v[1], t.v[2]);
+    appearance.add(geometry, triangles);
+    for (const Triangle& t : triangles)
+      sequence.triangles.push_back({{t.v[0] + sequence.vertex_count, t.v[1] + sequence.vertex_count,
+                                     t.v[2] + sequence.vertex_count}});
+    groups.insert(groups.end(), geometry.smoothing_groups.begin(), geometry.smoothing_groups.end());
+    sequence.vertex_count += static_cast<std::uint32_t>(geometry.positions.size());
+  }
+  sequence.appearance = appearance.take();
+  return groups;
+}
+
+/// Lists the clips' keys in the sequence and makes room for their poses.
+void lay_out_keys(const Document& document, const std::vector<AnimationClip>& clips,
+                  PoseSequence& sequence) {
+  for (const AnimationClip& clip : clips) {
+    sequence.clips.push_back(
+        {clip.name, sequence.key_count(), static_cast<std::uint32_t>(clip.key_times.size())});
+    sequence.key_times.insert(sequence.key_times.end(), clip.key_times.begin(),
+                              clip.key_times.end());
+  }
+  const std::size_t bytes_per_key = sizeof(Vec3f) * sequence.vertex_count;
+  if (sequence.key_times.size() > kMaxPositionBytes / bytes_per_key)
+    throw Error(ErrorCode::kOverLimit,
+                document.path + ": " + std::to_string(sequence.key_times.size()) + " keys of " +
+                    std::to_string(sequence.vertex_count) +
+                    " vertices take over 16 GiB; choose a lower --fps or fewer --clips");
+  sequence.positions.resize(sequence.key_times.size() * sequence.vertex_count);
+}
+
+void place_scene(const Scene& scene, const NodePose& pose, std::span<Vec3f> positions) {
+  std::size_t first = 0;
+  for (const Instance& instance : scene.instances) {
+    const std::size_t count = instance.geometry->positions.size();
+    place_vertices(instance, pose, joints_of(scene, instance, pose),
+                   positions.subspan(first, count));
+    first += count;
+  }
+}
+
+void check_finite(const Document& document, const PoseSequence& sequence, std::uint32_t key,
+                  const std::string& clip) {
+  for (const Vec3f& p : sequence.pose(key))
+    if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
+      throw bad_input(document.path, "clip \"" + clip + "\" takes a vertex out of range at " +
+                                         std::to_string(sequence.key_times[key]) + " s");
+}
+
+void sample_keys(const Document& document, const Scene& scene,
+                 const std::vector<AnimationClip>& clips, PoseSequence& sequence,
+                 ProgressSink& progress) {
+  for (std::size_t c = 0; c < clips.size(); ++c) {
+    const Clip& keys = sequence.clips[c];
+    for (std::size_t begin = 0; begin < keys.key_count; begin += kKeysPerReport) {
+      progress.report("read", static_cast<double>(keys.first_key + begin) / sequence.key_count());
+      const std::size_t count = std::min<std::size_t>(kKeysPerReport, keys.key_count - begin);
+      parallel_chunks(count, kKeysPerChunk, [&](std::size_t from, std::size_t to) {
+        for (std::size_t i = begin + from; i < begin + to; ++i) {
+          const auto key = keys.first_key + static_cast<std::uint32_t>(i);
+          const NodePose pose = pose_nodes(document, clips[c], clips[c].key_times[i]);
+          place_scene(scene, pose, sequence.pose(key));
+          check_finite(document, sequence, key, keys.name);
+        }
+      });
+    }
+  }
+}
+
+GltfResult read(const std::string& path, const GltfOptions& options, ProgressSink& progress) {
+  if (!(options.fps > 0 && options.fps <= 10000))
+    throw Error(ErrorCode::kUsage, "--fps must be above 0 and at most 10000");
+  progress.report("read", 0.0);
+  Notes notes;
+  Document document = load_document(path, notes);
+  const std::vector<AnimationClip> clips = read_clips(document, options);
+  const Scene scene = read_scene(document, notes);
+
+  GltfResult result;
+  PoseSequence& sequence = result.sequence;
+  const NodePose first_pose = pose_nodes(document, clips[0], 0.0);
+  const std::vector<std::uint64_t> groups = assemble(document, scene, first_pose, notes, sequence);
+  lay_out_keys(document, clips, sequence);
+  sample_keys(document, scene, clips, sequence, progress);
+  weld_vertices(sequence, groups);
+  check_consistency(sequence);
+
+  result.dependencies = std::move(document.dependencies);
+  result.notes = notes.sentences();
+  progress.report("read", 1.0);
+  return result;
+}
+
+}  // namespace
+
+GltfResult read_gltf(const std::string& path, const GltfOptions& options, ProgressSink& progress) {
+  try {
+    return read(path, options, progress);
+  } catch (const std::bad_alloc&) {
+    throw Error(ErrorCode::kOverLimit,
+                path + ": does not fit into memory; choose a lower --fps or fewer --clips");
+  }
+}
+
+}  // namespace mdk
