@@ -26,9 +26,14 @@ constexpr std::size_t kMaxNameInTemporary = 200;  // file names end at 255 bytes
 
 std::string reason(int error_number) { return std::generic_category().message(error_number); }
 
-void refuse_special_target(const std::string& path) {
+/// Before the work that is to be written, where rename would find out after it.
+void refuse_bad_target(const std::string& path) {
   struct stat status {};
-  if (::stat(path.c_str(), &status) != 0) return;
+  if (::stat(path.c_str(), &status) != 0) {
+    const int error_number = errno;
+    if (error_number == ENOENT) return;
+    throw io_error(path, "cannot be written: " + reason(error_number));
+  }
   if (S_ISDIR(status.st_mode)) {
     throw io_error(path, "cannot be written: it is a folder; name a file in it");
   }
@@ -53,7 +58,7 @@ AtomicFile::AtomicFile(const std::string& path) : path_(path) {
   const std::filesystem::path target(path);
   const std::string name = target.filename().string();
   if (name.empty()) throw io_error("'" + path + "'", "cannot be written: it names no file");
-  refuse_special_target(path);
+  refuse_bad_target(path);
   folder_ = target.has_parent_path() ? target.parent_path().string() : ".";
 
   std::string stem = ".";

@@ -1,0 +1,109 @@
+#include "tests/formats/sample_model.h"
+
+namespace mdk::test {
+namespace {
+
+constexpr std::uint32_t kKeys = 3;
+constexpr std::uint32_t kTrianglesPerStrip[2] = {4, 2};
+constexpr float kRise = 0.5f;  // of cluster 0, per key
+
+/// Vertices of one strip zigzag between y = base and y = base + 1 along x, at z.
+void append_strip_vertices(ModelStorage& model, float base, float z, std::uint32_t triangles) {
+  for (std::uint32_t i = 0; i < triangles + 2; ++i) {
+    model.key_positions.push_back({static_cast<float>(i / 2), base + static_cast<float>(i % 2), z});
+  }
+}
+
+void add_geometry(ModelStorage& model) {
+  model.vertex_count = kTrianglesPerStrip[0] + 2 + kTrianglesPerStrip[1] + 2;
+  model.clips = {{"walk", 0, 2}, {"stánd", 2, 1}};
+  model.key_times = {0.0, 0.25, 0.125};
+  model.rest_key = 0;
+  for (std::uint32_t key = 0; key < kKeys; ++key) {
+    append_strip_vertices(model, kRise * static_cast<float>(key), 0.0f, kTrianglesPerStrip[0]);
+    append_strip_vertices(model, 4.0f, 2.0f, kTrianglesPerStrip[1]);
+  }
+  std::uint32_t first_vertex = 0;
+  for (const std::uint32_t count : kTrianglesPerStrip) {
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const std::uint32_t a = first_vertex + i;
+      model.triangles.push_back(i % 2 == 0 ? Triangle{{a, a + 2, a + 1}}
+                                           : Triangle{{a, a + 1, a + 2}});
+    }
+    first_vertex += count + 2;
+  }
+  model.source_triangles = {5, 4, 3, 2, 1, 0};
+  model.bounds = {{0, 0, 0}, {2, 5, 2}};
+  model.rest_diagonal = 5.744562646538029;
+}
+
+void add_clusters(ModelStorage& model) {
+  model.kd_nodes = {KdNode::inner(0, 1.0f, 1), KdNode::leaf(0, 3), KdNode::inner(1, 2.0f, 3),
+                    KdNode::leaf(3, 2),        KdNode::leaf(5, 0), KdNode::leaf(0, 2)};
+  model.kd_refs = {0, 1, 2, 2, 3, 4, 5};
+  Cluster rising;
+  rising.triangle_count = 4;
+  rising.node_count = 5;
+  rising.ref_count = 5;
+  rising.local_box = {{0, 0, 0}, {2, 1, 0}};
+  Cluster still;
+  still.first_triangle = 4;
+  still.triangle_count = 2;
+  still.first_node = 5;
+  still.node_count = 1;
+  still.first_ref = 5;
+  still.ref_count = 2;
+  still.local_box = {{0, 4, 2}, {1, 5, 2}};
+  model.clusters = {rising, still};
+  for (std::uint32_t key = 0; key < kKeys; ++key) {
+    const float y = kRise * static_cast<float>(key);
+    Affine3f back;
+    back.m[1][3] = -y;
+    model.local_from_world.push_back(back);
+    model.local_from_world.push_back(Affine3f{});
+    model.cluster_world_boxes.push_back({{0, y, 0}, {2, y + 1, 0}});
+    model.cluster_world_boxes.push_back(still.local_box);
+  }
+  for (const Cluster& cluster : model.clusters) {
+    for (std::uint32_t i = 0; i < cluster.triangle_count; ++i) {
+      Aabb box;
+      for (const std::uint32_t v : model.triangles[cluster.first_triangle + i].v) {
+        box.extend(model.key_positions[v]);
+      }
+      model.fuzzy_boxes.push_back(box);
+    }
+  }
+}
+
+void add_appearance(ModelStorage& model) {
+  Appearance& look = model.appearance;
+  Material plain;
+  plain.flags = kMaterialFlatShaded;
+  Material brick;
+  brick.base_color[0] = 1.0f;
+  brick.texture = 1;
+  brick.flags = kMaterialUnlit;
+  brick.wrap_u = TextureWrap::kMirror;
+  brick.wrap_v = TextureWrap::kClamp;
+  look.materials = {plain, brick};
+  look.triangle_materials = {0, 1, 0, 1, 1, 1};
+  look.textures = {{1, 1, 0}, {3, 2, 1}};
+  look.texels = {0xff0000ffu, 0xff00ff00u, 0xffff0000u, 0xffffffffu, 0xff000000u, 0x80808080u, 7u};
+  for (std::uint32_t corner = 0; corner < 3 * model.triangles.size(); ++corner) {
+    look.corner_texcoords.push_back(
+        {static_cast<float>(corner) / 4, 1.0f - static_cast<float>(corner)});
+    look.corner_colors.push_back(0xff000000u + corner * 0x00010307u);
+  }
+}
+
+}  // namespace
+
+ModelStorage sample_model() {
+  ModelStorage model;
+  add_geometry(model);
+  add_clusters(model);
+  add_appearance(model);
+  return model;
+}
+
+}  // namespace mdk::test

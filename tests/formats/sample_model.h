@@ -1,0 +1,13 @@
+// A small model made by hand: 2 clusters, 3 keys in 2 clips, 2 textures, colours, 2 kd-trees.
+#pragma once
+
+#include "common/motion/model.h"
+
+namespace mdk::test {
+
+/// Two strips of triangles, each in the plane of its cluster: cluster 0 rises along y from key to
+/// key, its map moving it back; cluster 1 stands still. Cluster 0's tree has two inner nodes and an
+/// empty leaf, cluster 1's is one leaf. No list of the model is empty.
+ModelStorage sample_model();
+
+}  // namespace mdk::test
