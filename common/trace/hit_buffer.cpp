@@ -1,5 +1,6 @@
 #include "common/trace/hit_buffer.h"
 
+#include <algorithm>
 #include <bit>
 
 namespace mdk {
@@ -16,8 +17,23 @@ std::uint64_t count_mismatches(const HitBuffer& a, const HitBuffer& b) {
 
 std::uint64_t count_hits(const HitBuffer& hits) {
   std::uint64_t count = 0;
-  for (std::uint32_t y = 0; y < hits.height(); ++y)
-    for (std::uint32_t x = 0; x < hits.width(); ++x) count += hits.triangle(x, y) != kNoHit;
+  for (std::size_t i = 0; i < hits.tile_count(); ++i) {
+    const auto tile = static_cast<std::uint32_t>(i);
+    const std::uint32_t left = tile % hits.tiles_x() * kTileSide;
+    const std::uint32_t top = tile / hits.tiles_x() * kTileSide;
+    const std::uint32_t columns = std::min(kTileSide, hits.width() - left);
+    const std::uint32_t rows = std::min(kTileSide, hits.height() - top);
+    const std::uint32_t* triangle = hits.tile(i).triangle;
+    std::uint32_t in_tile = 0;
+    if (columns == kTileSide) {
+      for (std::uint32_t p = 0; p < rows * kTileSide; ++p) in_tile += triangle[p] != kNoHit;
+    } else {
+      for (std::uint32_t y = 0; y < rows; ++y)
+        for (std::uint32_t x = 0; x < columns; ++x)
+          in_tile += triangle[y * kTileSide + x] != kNoHit;
+    }
+    count += in_tile;
+  }
   return count;
 }
 

@@ -1,0 +1,42 @@
+#include "common/trace/hit_buffer.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace mdk {
+namespace {
+
+HitBuffer make_hits(std::uint32_t width, std::uint32_t height) {
+  HitBuffer hits;
+  hits.resize(width, height);
+  for (std::size_t i = 0; i < hits.tile_count(); ++i) hits.tile(i).clear();
+  return hits;
+}
+
+TEST(HitBuffer, CountsPixelsOfTheImageAndNotThoseOfTilesPastItsEdge) {
+  HitBuffer hits = make_hits(35, 19);
+  ASSERT_EQ(hits.tile_count(), 6u);
+  EXPECT_EQ(count_hits(hits), 0u);
+  for (std::size_t i = 0; i < hits.tile_count(); ++i)
+    for (std::uint32_t& triangle : hits.tile(i).triangle) triangle = 3;
+  EXPECT_EQ(count_hits(hits), 35u * 19u);
+}
+
+TEST(HitBuffer, MismatchIsAnotherTriangleOrAnotherBitOfDepth) {
+  HitBuffer a = make_hits(20, 20), b = make_hits(20, 20);
+  EXPECT_EQ(count_mismatches(a, b), 0u);
+  a.tile(0).triangle[5] = b.tile(0).triangle[5] = 7;
+  a.tile(0).t[5] = 1.0f;
+  b.tile(0).t[5] = std::nextafter(1.0f, 2.0f);
+  EXPECT_EQ(count_mismatches(a, b), 1u);
+  b.tile(0).t[5] = 1.0f;
+  b.tile(0).triangle[5] = 8;
+  EXPECT_EQ(count_mismatches(a, b), 1u);
+  a.tile(3).triangle[kTilePixels - 1] = 1;  // pixel (31, 31): outside the image
+  EXPECT_EQ(count_mismatches(a, b), 1u);
+  EXPECT_EQ(a.triangle(5, 0), 7u);
+}
+
+}  // namespace
+}  // namespace mdk

@@ -1,0 +1,57 @@
+#include "common/base/parallel.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <mutex>
+#include <set>
+#include <stdexcept>
+#include <vector>
+
+namespace mdk {
+namespace {
+
+TEST(Parallel, ChunksCoverTheRangeOnceAndAreTheSameForAnyThreadCount) {
+  std::vector<std::set<std::pair<std::size_t, std::size_t>>> seen;
+  for (const int threads : {1, 2, 5}) {
+    const ThreadLimit limit(threads);
+    std::mutex mutex;
+    std::set<std::pair<std::size_t, std::size_t>> chunks;
+    std::vector<int> visits(1003, 0);
+    parallel_chunks(visits.size(), 10, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) ++visits[i];
+      const std::lock_guard lock(mutex);
+      chunks.emplace(begin, end);
+    });
+    for (const int count : visits) EXPECT_EQ(count, 1);
+    seen.push_back(chunks);
+  }
+  EXPECT_EQ(seen[0], seen[1]);
+  EXPECT_EQ(seen[0], seen[2]);
+}
+
+TEST(Parallel, EmptyRangeCallsNothingAndExceptionsArePassedOn) {
+  parallel_chunks(0, 10, [](std::size_t, std::size_t) { FAIL(); });
+  for (const int threads : {1, 2}) {
+    const ThreadLimit limit(threads);
+    EXPECT_THROW(parallel_chunks(100, 1,
+                                 [](std::size_t i, std::size_t) {
+                                   if (i == 57) throw std::runtime_error("57");
+                                 }),
+                 std::runtime_error);
+  }
+}
+
+TEST(Parallel, ThreadLimitHolds) {
+  {
+    const ThreadLimit limit(1);
+    EXPECT_EQ(thread_count(), 1);
+    const ThreadLimit more(4);
+    EXPECT_EQ(thread_count(), 1);
+  }
+  const ThreadLimit limit(0);
+  EXPECT_GE(thread_count(), 1);
+}
+
+}  // namespace
+}  // namespace mdk
