@@ -1,0 +1,90 @@
+// Damaged files that opening lets through are traced and shaded by every technique: whatever
+// numbers they hold, nothing leaves its list (AddressSanitizer) and no hit names a triangle there
+// is not.
+#include <gtest/gtest.h>
+
+#include <optional>
+#include <string>
+
+#include "common/base/parallel.h"
+#include "common/trace/renderer.h"
+#include "tests/formats/hostile_file.h"
+#include "tests/formats/mdk_image.h"
+
+namespace mdk::test {
+namespace {
+
+constexpr std::uint32_t kSide = 20;  // more than one tile
+
+/// In front of the undamaged sample.
+Camera sample_camera() { return fit_camera({{0, 0, 0}, {2, 5, 2}}, 1.0); }
+
+std::uint32_t hits_in(const HitBuffer& hits, std::uint32_t triangles) {
+  std::uint32_t count = 0;
+  for (std::uint32_t y = 0; y < kSide; ++y) {
+    for (std::uint32_t x = 0; x < kSide; ++x) {
+      if (hits.triangle(x, y) == kNoHit) continue;
+      EXPECT_LT(hits.triangle(x, y), triangles);
+      ++count;
+    }
+  }
+  return count;
+}
+
+/// Renders in all techniques and shadings; returns how many pixels were hit altogether.
+std::uint32_t render_everything(const ModelStorage& storage) {
+  const Model model = storage.view();
+  std::uint32_t hits = 0;
+  for (const TechniqueInfo& technique : technique_table()) {
+    Renderer renderer(model, technique.id);
+    for (const KeyInterval& at : {at_key(model.rest_key), KeyInterval{0, 1, 0.25f}}) {
+      for (const ShadingInfo& shading : shading_table()) {
+        const FrameRequest request{.at = at,
+                                   .camera = sample_camera(),
+                                   .width = kSide,
+                                   .height = kSide,
+                                   .shading = shading.mode};
+        renderer.render(request);
+      }
+      hits += hits_in(renderer.hits(), model.triangle_count());
+    }
+  }
+  return hits;
+}
+
+TEST(MdkHostileTrace, TheUndamagedSampleIsSeen) {
+  HostileFile file;
+  const std::optional<ModelStorage> model = file.open(file.bytes());
+  ASSERT_TRUE(model.has_value());
+  EXPECT_GT(render_everything(*model), 100u);
+}
+
+TEST(MdkHostileTrace, AnyDamageThatOpensCanBeRendered) {
+  const ThreadLimit one_thread(1);  // the frames are tiny
+  HostileFile file;
+  std::size_t refused = 0, rendered = 0;
+  const auto words = extreme_words();
+  for (const ByteRange& range : file.ranges()) {
+    std::size_t turn = 0;
+    for (std::size_t at = range.begin; at + 4 <= range.end; at += 4) {
+      // Every second word, and two of the extremes in turn: all would take minutes.
+      if (++turn % 2 != 0) continue;
+      for (const std::size_t which : {turn, turn + words.size() / 2}) {
+        const auto model = file.open(file.with_word(at, words[which % words.size()]));
+        if (!model) {
+          ++refused;
+          continue;
+        }
+        ++rendered;
+        render_everything(*model);
+        ASSERT_FALSE(testing::Test::HasFailure()) << range.name << " byte " << at - range.begin
+                                                  << " word " << words[which % words.size()];
+      }
+    }
+  }
+  std::printf("%zu refused, %zu rendered\n", refused, rendered);
+  EXPECT_GT(rendered, refused / 2);
+}
+
+}  // namespace
+}  // namespace mdk::test
