@@ -14,8 +14,9 @@ static_assert(kMaxKdDepth < kNotReached);
 bool reach_children(const KdNode& node, std::size_t index, std::vector<std::uint8_t>& depths) {
   const std::size_t below = node.below();
   if (!std::isfinite(node.split())) return false;
-  if (below <= index || below + 1 >= depths.size()) return false;
+  if (below + 1 >= depths.size()) return false;
   if (depths[index] == kMaxKdDepth) return false;
+  // Up to `index` all nodes are reached, so this refuses links that do not point forward, too.
   for (const std::size_t child : {below, below + 1}) {
     if (depths[child] != kNotReached) return false;
     depths[child] = static_cast<std::uint8_t>(depths[index] + 1);
