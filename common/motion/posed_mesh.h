@@ -33,7 +33,8 @@ class PosedMesh {
 Aabb cluster_world_box(const Model& model, std::uint32_t c, const KeyInterval& at);
 
 /// Boxes of all triangles in the present pose, in triangle order; `boxes` has one per triangle.
-/// Runs in parallel.
+/// None is empty or infinite: a triangle with a corner that is not finite cannot be hit
+/// (docs/kernels.md), and gets a point. Runs in parallel.
 void triangle_boxes(const PosedMesh& mesh, std::span<Aabb> boxes);
 
 }  // namespace mdk

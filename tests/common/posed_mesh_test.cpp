@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <limits>
 #include <random>
 
 namespace mdk {
@@ -57,6 +59,22 @@ TEST(PosedMesh, TriangleBoxesHoldTheirCornersTightly) {
     Aabb expected;
     for (const std::uint32_t v : model.triangles[t].v) expected.extend(mesh.positions()[v]);
     EXPECT_EQ(boxes[t], expected);
+  }
+}
+
+TEST(PosedMesh, BoxesAreFiniteWhateverTheCornersAre) {
+  ModelStorage storage = two_keys(9);
+  const float inf = std::numeric_limits<float>::infinity();
+  storage.key_positions[1] = {std::nanf(""), 0, 0};
+  for (int i = 3; i < 6; ++i) storage.key_positions[i] = {std::nanf(""), inf, -inf};
+  const Model model = storage.view();
+  PosedMesh mesh(model);
+  mesh.set_time(at_key(0));
+  std::vector<Aabb> boxes(model.triangle_count());
+  triangle_boxes(mesh, boxes);
+  for (const Aabb& box : boxes) {
+    EXPECT_FALSE(box.empty());
+    EXPECT_TRUE(std::isfinite(box.diagonal()));
   }
 }
 
