@@ -1,6 +1,5 @@
 #include "common/motion/posed_mesh.h"
 
-#include <cmath>
 #include <limits>
 
 #include "common/base/parallel.h"
@@ -10,20 +9,16 @@ namespace {
 
 constexpr std::size_t kVerticesPerChunk = 16384;
 constexpr std::size_t kTrianglesPerChunk = 8192;
-constexpr Aabb kOrigin{{0, 0, 0}, {0, 0, 0}};
+constexpr Aabb kNowhere{{0, 0, 0}, {0, 0, 0}};
 
 /// Neither empty (corners that are not numbers) nor reaching to infinity.
 bool is_usable(const Aabb& b) {
   constexpr float kMax = std::numeric_limits<float>::max();
   bool ok = true;
-  for (int axis = 0; axis < 3; ++axis) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
     ok &= -kMax <= b.lo[axis] && b.lo[axis] <= b.hi[axis] && b.hi[axis] <= kMax;
   }
   return ok;
-}
-
-bool is_finite(const Vec3f& p) {
-  return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
 }
 
 }  // namespace
@@ -58,14 +53,12 @@ Aabb cluster_world_box(const Model& model, std::uint32_t c, const KeyInterval& a
 void triangle_boxes(const PosedMesh& mesh, std::span<Aabb> boxes) {
   const std::span<const Triangle> triangles = mesh.model().triangles;
   const std::span<const Vec3f> positions = mesh.positions();
-  // Files may hold any positions, NaN included. Structures are built over finite boxes: triangles
-  // that have none get a point within the model.
-  const Aabb nowhere{mesh.model().bounds.lo, mesh.model().bounds.lo};
+  // Files may hold any positions, NaN included; structures are built over finite boxes.
   parallel_chunks(triangles.size(), kTrianglesPerChunk, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       Aabb box;
       for (std::uint32_t v : triangles[i].v) box.extend(positions[v]);
-      boxes[i] = is_usable(box) ? box : nowhere;
+      boxes[i] = is_usable(box) ? box : kNowhere;
     }
   });
 }
