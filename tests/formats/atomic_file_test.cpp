@@ -74,6 +74,7 @@ TEST_F(AtomicFileTest, AppearsOnlyWhenCommitted) {
   EXPECT_EQ(std::filesystem::path(file.temporary_path()).parent_path(), folder_.path());
   file.write(raw(old_));
   file.commit();
+  EXPECT_EQ(file.temporary_path(), "");
   EXPECT_EQ(read_bytes(path_), (Bytes{'n', 'e', 'w', 'e', 'r', 'o', 'l', 'd'}));
   EXPECT_THAT(folder_.names(), ElementsAre("out.bin"));
 }
