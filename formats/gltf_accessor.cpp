@@ -75,6 +75,19 @@ void for_each_element(const Document& document, int accessor, const Read& read) 
 
 }  // namespace
 
+std::size_t component_bytes(ComponentType type) {
+  switch (type) {
+    case ComponentType::kInt8:
+    case ComponentType::kUint8:
+      return 1;
+    case ComponentType::kInt16:
+    case ComponentType::kUint16:
+      return 2;
+    default:
+      return 4;
+  }
+}
+
 std::vector<float> read_floats(const Document& document, int accessor) {
   const Accessor& a = document.accessors[static_cast<std::size_t>(accessor)];
   const auto components = static_cast<std::size_t>(a.components);

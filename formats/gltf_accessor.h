@@ -1,6 +1,7 @@
 // Accessors, read: strides, sparse replacements and normalised integers resolved.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -8,6 +9,9 @@
 #include "formats/gltf_document.h"
 
 namespace mdk::gltf {
+
+/// Bytes of one number.
+std::size_t component_bytes(ComponentType type);
 
 /// All numbers of an accessor, element after element: count * components. Normalised integers
 /// become [0, 1] or [-1, 1], other integers their value. Throws Error (kBadInput) for a number that

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "common/base/error.h"
+#include "formats/gltf_accessor.h"
 #include "formats/gltf_checks.h"
 #include "formats/gltf_schema.h"
 
@@ -85,8 +86,9 @@ tinygltf::Model parse(const Bytes& bytes, BufferFiles& files) {
   }
   if (files.failure) std::rethrow_exception(files.failure);
   if (!loaded) {
-    const std::string first = error.substr(0, std::min<std::size_t>(error.find('\n'), 200));
-    throw bad_input(files.path, "is not usable glTF (" + first + ")");
+    // Its first line, without the bytes of a data URI.
+    const std::size_t end = std::min({error.find('\n'), error.find("data:"), std::size_t{200}});
+    throw bad_input(files.path, "is not usable glTF (" + error.substr(0, end) + ")");
   }
   return model;
 }
@@ -368,19 +370,6 @@ class Converter {
 };
 
 }  // namespace
-
-std::size_t component_bytes(ComponentType type) {
-  switch (type) {
-    case ComponentType::kInt8:
-    case ComponentType::kUint8:
-      return 1;
-    case ComponentType::kInt16:
-    case ComponentType::kUint16:
-      return 2;
-    default:
-      return 4;
-  }
-}
 
 void Notes::add(const std::string& sentence) {
   if (std::ranges::find(sentences_, sentence) == sentences_.end()) sentences_.push_back(sentence);

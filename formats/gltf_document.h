@@ -20,8 +20,6 @@ inline constexpr int kNone = -1;
 
 enum class ComponentType : std::uint8_t { kInt8, kUint8, kInt16, kUint16, kUint32, kFloat32 };
 
-std::size_t component_bytes(ComponentType type);
-
 /// `count` elements of `components` numbers each. Every byte that it reaches exists.
 struct Accessor {
   const unsigned char* data = nullptr;  ///< null: every element is zero

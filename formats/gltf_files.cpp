@@ -74,7 +74,8 @@ Bytes read_whole_file(const std::string& path) {
 std::string resolve_uri(const std::string& gltf_path, const std::string& uri) {
   const std::string name = percent_decoded(uri);
   const fs::path relative = fs::path(name).lexically_normal();
-  const bool leaves = relative.is_absolute() || relative.empty() || *relative.begin() == "..";
+  const bool leaves = relative.is_absolute() || relative.empty() || *relative.begin() == ".." ||
+                      *relative.begin() == ".";
   if (leaves || has_scheme(name) || name.find('\0') != std::string::npos)
     throw bad_input(gltf_path, "refers to \"" + uri.substr(0, 200) +
                                    "\", which is not a file in its own folder; put it there");

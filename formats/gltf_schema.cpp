@@ -201,6 +201,7 @@ class SchemaCheck {
     string(o, at, "uri", Need::kOptional);
     if (!o.contains("uri")) return;
     const std::string& uri = o["uri"].get_ref<const std::string&>();
+    if (uri.empty()) fail(at, "has an empty uri");
     if (!uri.starts_with("data:")) {
       summary_.external_buffers.push_back({uri, bytes});
     } else if (!uri.starts_with("data:application/octet-stream;base64,") &&
