@@ -120,9 +120,12 @@ std::string bench_csv(const BenchMachine& machine, std::span<const ModelBench> m
       row.update(technique_row(technique));
       std::string names, values;
       for (const auto& [name, value] : row.items()) {
-        names += (names.empty() ? "" : ",") + name;
-        values += (values.empty() ? "" : ",") +
-                  csv_cell(value.is_string() ? value.get<std::string>() : value.dump());
+        if (!names.empty()) {
+          names += ',';
+          values += ',';
+        }
+        names += name;
+        values += csv_cell(value.is_string() ? value.get<std::string>() : value.dump());
       }
       header = names + "\n";
       lines += values + "\n";

@@ -12,13 +12,14 @@ namespace {
 constexpr double kRedrawSeconds = 0.1;
 constexpr double kStageSeconds = 0.3;
 constexpr double kLineSeconds = 2;
-constexpr double kLineStep = 0.1;
 constexpr const char* kClearLine = "\r\x1b[K";
 
 std::string percent_text(double fraction) {
   const std::string digits = std::to_string(static_cast<int>(fraction * 100));
   return std::string(digits.size() < 3 ? 3 - digits.size() : 0, ' ') + digits + " %";
 }
+
+int tenths(double fraction) { return static_cast<int>(fraction * 10); }
 
 std::string clock_text(double seconds) {
   const long long total = std::llround(std::min(seconds, 3.6e6));
@@ -36,35 +37,41 @@ std::string progress_line_text(std::string_view stage, double fraction, double e
 }
 
 std::string progress_bar_text(std::string_view stage, double fraction, double elapsed_seconds) {
-  constexpr int kWidth = 24;
-  const int done = static_cast<int>(fraction * kWidth);
-  return "[" + std::string(static_cast<std::size_t>(done), '#') +
-         std::string(static_cast<std::size_t>(kWidth - done), '-') + "] " +
-         progress_line_text(stage, fraction, elapsed_seconds);
+  constexpr std::size_t kWidth = 24;
+  const auto done = static_cast<std::size_t>(fraction * kWidth);
+  std::string text = "[";
+  text.append(done, '#').append(kWidth - done, '-').append("] ");
+  return text + progress_line_text(stage, fraction, elapsed_seconds);
 }
 
-bool ProgressBar::due(std::string_view stage, double fraction) const {
-  if (style_ == ProgressStyle::kNone) return false;
-  if (drawn_fraction_ < 0) return true;
-  const double seconds = since_drawn_.seconds();
-  if (style_ == ProgressStyle::kBar) return seconds >= kRedrawSeconds;
-  if (stage != drawn_stage_) return seconds >= kStageSeconds;
-  return fraction >= drawn_fraction_ + kLineStep && seconds >= kLineSeconds;
+bool ProgressBar::due(std::string_view stage, double fraction, double now) const {
+  const double waited = now - drawn_;
+  switch (style_) {
+    case ProgressStyle::kNone:
+      return false;
+    case ProgressStyle::kBar:
+      return waited >= kRedrawSeconds || drawn_stage_.empty();
+    case ProgressStyle::kLines:
+      return stage != drawn_stage_
+                 ? waited >= kStageSeconds
+                 : waited >= kLineSeconds && tenths(fraction) > tenths(drawn_fraction_);
+  }
+  return false;
 }
 
 void ProgressBar::report(std::string_view stage, double fraction) {
   throw_if_interrupted();
   const double shown = fraction >= 0 ? std::min(fraction, 1.0) : 0.0;
-  if (!due(stage, shown)) return;
+  const double now = clock_();
+  if (!due(stage, shown, now)) return;
   drawn_stage_ = stage;
   drawn_fraction_ = shown;
-  since_drawn_.lap();
+  drawn_ = now;
   if (style_ == ProgressStyle::kBar) {
-    out_ << kClearLine << progress_bar_text(stage, shown, since_start_.seconds()) << std::flush;
+    out_ << kClearLine << progress_bar_text(stage, shown, now - start_) << std::flush;
     bar_visible_ = true;
   } else {
-    out_ << "mdprep: " << progress_line_text(stage, shown, since_start_.seconds()) << "\n"
-         << std::flush;
+    out_ << "mdprep: " << progress_line_text(stage, shown, now - start_) << "\n" << std::flush;
   }
 }
 

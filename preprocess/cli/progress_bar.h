@@ -2,6 +2,7 @@
 // the place where Ctrl-C takes effect, since every long stage reports here.
 #pragma once
 
+#include <functional>
 #include <iosfwd>
 #include <string>
 #include <string_view>
@@ -20,24 +21,32 @@ enum class ProgressStyle {
 /// report() throws Interrupted after Ctrl-C, in every style. Removes its bar when it ends.
 class ProgressBar final : public ProgressSink {
  public:
-  ProgressBar(std::ostream& out, ProgressStyle style) : out_(out), style_(style) {}
+  /// Seconds since some moment; a test's own clock makes what is printed exact.
+  using Clock = std::function<double()>;
+
+  ProgressBar(std::ostream& out, ProgressStyle style)
+      : ProgressBar(out, style, [watch = Stopwatch()] { return watch.seconds(); }) {}
+  ProgressBar(std::ostream& out, ProgressStyle style, Clock clock)
+      : out_(out), style_(style), clock_(std::move(clock)), start_(clock_()), drawn_(start_) {}
   ~ProgressBar() override { clear(); }
   ProgressBar(const ProgressBar&) = delete;
   ProgressBar& operator=(const ProgressBar&) = delete;
 
   void report(std::string_view stage, double fraction) override;
 
-  /// Makes room for a message; the next report draws the bar again.
+  /// Makes room for a message; a later report draws the bar again.
   void clear();
 
  private:
-  bool due(std::string_view stage, double fraction) const;
+  bool due(std::string_view stage, double fraction, double now) const;
 
   std::ostream& out_;
   ProgressStyle style_;
-  Stopwatch since_start_, since_drawn_;
+  Clock clock_;
+  double start_;
+  double drawn_;  ///< when something was last drawn; at first, the start
   std::string drawn_stage_;
-  double drawn_fraction_ = -1;  ///< before anything was drawn
+  double drawn_fraction_ = 0;
   bool bar_visible_ = false;
 };
 

@@ -1,0 +1,146 @@
+// mdprep bake, started as a user does.
+#include <gmock/gmock.h>
+
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "common/base/isa.h"
+#include "tests/cli/baked_sample.h"
+#include "tests/cli/program_run.h"
+#include "tests/cli/sample_mesh.h"
+
+namespace mdk::test {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using testing::HasSubstr;
+
+std::vector<std::string> names_of(const Json& object) {
+  std::vector<std::string> names;
+  for (const auto& [name, value] : object.items()) names.push_back(name);
+  return names;
+}
+
+class Bake : public BakedSample {};
+
+TEST_F(Bake, TheReportHasExactlyTheFieldsOfTheContract) {
+  const Outcome bake = run_mdprep(
+      {"bake", source(), "-o", folder_.file("a.mdk"), "--report", folder_.file("a.json")});
+  ASSERT_EQ(bake.status, 0) << bake.err;
+  const Json report = Json::parse(read_text(folder_.file("a.json")));
+  EXPECT_EQ(names_of(report),
+            (std::vector<std::string>{"schema", "input", "triangles", "vertices", "keys", "clips",
+                                      "clusters", "segments", "rest_key", "stop_reason",
+                                      "residual_rms", "residual_max", "sah_cost", "refine_gain",
+                                      "seconds", "peak_memory_bytes", "file_bytes"}));
+  EXPECT_EQ(names_of(report["seconds"]),
+            (std::vector<std::string>{"read", "decompose", "build", "write", "total"}));
+  EXPECT_EQ(report["schema"], "mdprep-bake/1");
+  EXPECT_EQ(report["input"], source());
+  EXPECT_EQ(report["triangles"], TubeShape{}.triangles());
+  EXPECT_EQ(report["keys"], kSampleKeys);
+  EXPECT_EQ(report["clips"], Json::parse(R"([{"name":"bend","seconds":1.0,"keys":31},
+                                             {"name":"swing","seconds":0.5,"keys":16}])"));
+  EXPECT_EQ(report["segments"], 1);
+  EXPECT_EQ(report["refine_gain"], 0.0);
+  EXPECT_EQ(report["file_bytes"], std::filesystem::file_size(folder_.file("a.mdk")));
+  EXPECT_GT(report["peak_memory_bytes"], 1u << 20);
+  EXPECT_GT(report["sah_cost"], 0.0);
+  EXPECT_GE(report["clusters"], 2) << "a bending tube and a cube that swings round it";
+  EXPECT_LE(report["residual_rms"], report["residual_max"]);
+  EXPECT_LT(report["residual_rms"], 0.1);
+  const double parts =
+      report["seconds"]["read"].get<double>() + report["seconds"]["decompose"].get<double>() +
+      report["seconds"]["build"].get<double>() + report["seconds"]["write"].get<double>();
+  EXPECT_GT(parts, 0);
+  EXPECT_LE(parts, report["seconds"]["total"].get<double>() * 1.001);
+}
+
+TEST_F(Bake, MakesTheSameBytesForAnyThreadCountAndInstructionSet) {
+  const std::string expected = read_text(baked());
+  std::vector<std::vector<std::string>> machines = {{"--threads", "1"}, {"--threads", "2"}};
+  for (const std::string_view isa : available_isas())
+    if (isa != "scalar") machines.push_back({"--isa", std::string(isa)});
+  for (const auto& machine : machines) {
+    std::vector<std::string> line = {"bake", source(), "-o", folder_.file("a.mdk"), "-q"};
+    line.insert(line.end(), machine.begin(), machine.end());
+    ASSERT_EQ(run_mdprep(line).status, 0);
+    EXPECT_TRUE(read_text(folder_.file("a.mdk")) == expected) << machine[0] << machine[1];
+  }
+}
+
+TEST_F(Bake, OptionsReachTheDecomposition) {
+  const auto report_with = [&](std::vector<std::string> options) {
+    std::vector<std::string> line = {
+        "bake", source(), "-o", folder_.file("a.mdk"), "-q", "--report", folder_.file("a.json")};
+    line.insert(line.end(), options.begin(), options.end());
+    const Outcome bake = run_mdprep(line);
+    EXPECT_EQ(bake.status, 0) << bake.err;
+    return Json::parse(read_text(folder_.file("a.json")));
+  };
+  EXPECT_EQ(report_with({"--clusters", "4"})["clusters"], 4);
+  EXPECT_EQ(report_with({"--clusters", "4"})["stop_reason"], "count");
+  EXPECT_EQ(report_with({"--stop", "50"})["stop_reason"], "percent");
+  EXPECT_EQ(report_with({"--decompose", "none"})["clusters"], 1);
+  EXPECT_EQ(report_with({"--decompose", "none"})["stop_reason"], "none");
+  EXPECT_EQ(report_with({"--rest-pose", "13"})["rest_key"], 13);
+  EXPECT_EQ(report_with({"--fps", "10"})["keys"], 11 + 6);
+  EXPECT_EQ(report_with({"--clips", "swing"})["keys"], 16);
+  EXPECT_EQ(report_with({"--clips", "swing,bend"})["keys"], kSampleKeys);
+}
+
+TEST_F(Bake, TheDepfileNamesEveryFileThatWasRead) {
+  std::filesystem::create_directory(folder_.file("my files"));
+  const std::string input = folder_.file("my files/tube.gltf");
+  write_sample_gltf(input);
+  const Outcome bake = run_mdprep(
+      {"bake", input, "-o", folder_.file("a.mdk"), "-q", "--depfile", folder_.file("a.d")});
+  ASSERT_EQ(bake.status, 0) << bake.err;
+  const std::string folder = folder_.path() + "/my\\ files/";
+  EXPECT_EQ(read_text(folder_.file("a.d")), folder_.file("a.mdk") + ": \\\n  " + folder +
+                                                "tube.gltf \\\n  " + folder + "tube.bin\n");
+}
+
+TEST_F(Bake, ProgressAndSummaryGoToStderrAlone) {
+  const Outcome plain = run_mdprep({"bake", source(), "-o", folder_.file("a.mdk")});
+  EXPECT_EQ(plain.status, 0);
+  EXPECT_EQ(plain.out, "");
+  EXPECT_THAT(plain.err, HasSubstr("396 triangles"));
+  EXPECT_THAT(plain.err, testing::Not(HasSubstr("\r"))) << "stderr is no terminal";
+  const Outcome bar =
+      run_mdprep({"bake", source(), "-o", folder_.file("a.mdk"), "--progress", "always"});
+  EXPECT_EQ(bar.out, "");
+  EXPECT_THAT(bar.err, HasSubstr("\r"));
+  const Outcome never =
+      run_mdprep({"bake", source(), "-o", folder_.file("a.mdk"), "--progress", "never"});
+  EXPECT_THAT(never.err, testing::Not(HasSubstr(" %  ")));
+  EXPECT_THAT(never.err, HasSubstr("396 triangles"));
+}
+
+TEST_F(Bake, AFailedBakeLeavesAnOldOutputAsItWas) {
+  write_text(folder_.file("a.mdk"), "old");
+  write_text(folder_.file("broken.gltf"), "{");
+  EXPECT_EQ(run_mdprep({"bake", folder_.file("broken.gltf"), "-o", folder_.file("a.mdk")}).status,
+            3);
+  EXPECT_EQ(read_text(folder_.file("a.mdk")), "old");
+  EXPECT_EQ(folder_.names(), (std::vector<std::string>{"a.mdk", "broken.gltf"}));
+}
+
+TEST_F(Bake, StoppedFromTheKeyboardItLeavesNothing) {
+  write_sample_gltf(folder_.file("long.gltf"), {600, 64});
+  ProgramRun bake(
+      {"bake", folder_.file("long.gltf"), "-o", folder_.file("long.mdk"), "--progress", "always"});
+  for (int i = 0; i < 600 && bake.err_so_far().empty(); ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  bake.send_signal(SIGINT);
+  const Outcome outcome = bake.wait();
+  EXPECT_EQ(outcome.status, 130);
+  EXPECT_THAT(outcome.err, HasSubstr("mdprep: interrupted"));
+  EXPECT_EQ(folder_.names(), (std::vector<std::string>{"long.bin", "long.gltf"}));
+}
+
+}  // namespace
+}  // namespace mdk::test

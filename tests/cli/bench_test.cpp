@@ -1,0 +1,106 @@
+// mdprep bench, started as a user does. No times are judged.
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "common/trace/technique.h"
+#include "tests/cli/baked_sample.h"
+#include "tests/cli/program_run.h"
+#include "tests/cli/sample_mesh.h"
+
+namespace mdk::test {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::vector<std::string> names_of(const Json& object) {
+  std::vector<std::string> names;
+  for (const auto& [name, value] : object.items()) names.push_back(name);
+  return names;
+}
+
+class Bench : public BakedSample {
+ protected:
+  Outcome bench(std::vector<std::string> options) const {
+    options.insert(options.begin(), {"bench", baked(), "--size", "64x48", "--rounds", "2"});
+    return run_mdprep(options);
+  }
+};
+
+TEST_F(Bench, JsonHasExactlyTheFieldsOfTheContractAndNoMismatch) {
+  const Outcome run = bench({"--frames", "5", "--json", folder_.file("b.json")});
+  ASSERT_EQ(run.status, 0) << run.err;
+  const Json report = Json::parse(read_text(folder_.file("b.json")));
+  EXPECT_EQ(names_of(report),
+            (std::vector<std::string>{"schema", "isa", "threads", "width", "height", "models"}));
+  EXPECT_EQ(report["schema"], "mdprep-bench/1");
+  const Json& model = report["models"][0];
+  EXPECT_EQ(names_of(model),
+            (std::vector<std::string>{"file", "triangles", "keys", "clusters", "techniques"}));
+  EXPECT_EQ(model["triangles"], TubeShape{}.triangles());
+  EXPECT_EQ(model["keys"], kSampleKeys);
+  ASSERT_EQ(model["techniques"].size() + 1, technique_table().size());
+  for (const Json& row : model["techniques"]) {
+    EXPECT_EQ(names_of(row),
+              (std::vector<std::string>{
+                  "id", "pose_ms", "update_ms", "trace_ms", "shade_ms", "time_to_image_ms", "fps",
+                  "node_visits_per_ray", "triangle_tests_per_ray", "clusters_per_ray",
+                  "structure_bytes", "prebuild_ms", "hit_mismatches", "frames"}));
+    EXPECT_NE(row["id"], "brute-force");
+    EXPECT_EQ(row["hit_mismatches"], 0) << row["id"];
+    EXPECT_GT(row["time_to_image_ms"], 0.0);
+    EXPECT_GT(row["node_visits_per_ray"], 0.0) << row["id"];
+    EXPECT_GT(row["triangle_tests_per_ray"], 0.0) << row["id"];
+    EXPECT_GT(row["structure_bytes"], 0) << row["id"];
+    ASSERT_EQ(row["frames"].size(), 5u);
+    EXPECT_EQ(names_of(row["frames"][0]),
+              (std::vector<std::string>{"key", "time_to_image_ms", "update_ms", "trace_ms"}));
+    EXPECT_EQ(row["frames"][0]["key"], 0);
+    EXPECT_EQ(row["frames"][4]["key"], kSampleKeys - 1);
+  }
+}
+
+TEST_F(Bench, CountsAreTheSameEveryTime) {
+  const auto counts = [&](const std::string& threads) {
+    EXPECT_EQ(
+        bench({"--frames", "4", "--json", folder_.file("b.json"), "--threads", threads}).status, 0);
+    const Json report = Json::parse(read_text(folder_.file("b.json")));
+    std::vector<double> found;
+    for (const Json& row : report["models"][0]["techniques"])
+      for (const char* name : {"node_visits_per_ray", "triangle_tests_per_ray", "clusters_per_ray"})
+        found.push_back(row[name]);
+    return found;
+  };
+  EXPECT_EQ(counts("1"), counts("2"));
+}
+
+TEST_F(Bench, StdoutHoldsTheTableAlone) {
+  const Outcome run = bench({"--frames", "2", "--techniques", "refit-bvh,fuzzy-kdtree", baked()});
+  ASSERT_EQ(run.status, 0) << run.err;
+  std::istringstream lines(run.out);
+  std::string line;
+  std::vector<std::string> first_words;
+  while (std::getline(lines, line)) {
+    std::istringstream words(line);
+    std::string model, technique;
+    words >> model >> technique;
+    first_words.push_back(model + " " + technique);
+  }
+  EXPECT_EQ(first_words,
+            (std::vector<std::string>{"model technique", "sample refit-bvh", "sample fuzzy-kdtree",
+                                      "sample refit-bvh", "sample fuzzy-kdtree"}));
+}
+
+TEST_F(Bench, CsvHasOneRowPerTechnique) {
+  const Outcome run = bench({"--frames", "2", "--csv", folder_.file("b.csv"), "-q"});
+  ASSERT_EQ(run.status, 0) << run.err;
+  EXPECT_EQ(run.err, "");
+  const std::string csv = read_text(folder_.file("b.csv"));
+  EXPECT_EQ(static_cast<std::size_t>(std::count(csv.begin(), csv.end(), '\n')),
+            technique_table().size());
+}
+
+}  // namespace
+}  // namespace mdk::test

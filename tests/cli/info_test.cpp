@@ -1,0 +1,55 @@
+// mdprep info, started as a user does.
+#include <gmock/gmock.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "tests/cli/baked_sample.h"
+#include "tests/cli/program_run.h"
+#include "tests/cli/sample_mesh.h"
+
+namespace mdk::test {
+namespace {
+
+using testing::HasSubstr;
+using Json = nlohmann::json;
+
+class Info : public BakedSample {};
+
+TEST_F(Info, JsonTellsWhatWasBaked) {
+  const Outcome run = run_mdprep({"info", baked(), "--json"});
+  ASSERT_EQ(run.status, 0) << run.err;
+  EXPECT_EQ(run.err, "");
+  const Json info = Json::parse(run.out);
+  EXPECT_EQ(info["schema"], "mdprep-info/1");
+  EXPECT_EQ(info["file"], baked());
+  EXPECT_EQ(info["triangles"], TubeShape{}.triangles());
+  EXPECT_EQ(info["vertices"], 13 * 16 + 8);
+  EXPECT_EQ(info["keys"], kSampleKeys);
+  EXPECT_EQ(info["clips"][1],
+            Json::parse(R"({"name":"swing","seconds":0.5,"first_key":31,"keys":16})"));
+  EXPECT_GE(info["clusters"], 2);
+  EXPECT_EQ(info["materials"], 2);
+  EXPECT_EQ(info["textures"], Json::array());
+  EXPECT_LT(info["bounds"]["lo"][1], 0.01);
+  EXPECT_GT(info["bounds"]["hi"][1], 1.99);
+  const std::uint64_t file_bytes = std::filesystem::file_size(baked());
+  EXPECT_EQ(info["file_bytes"], file_bytes);
+  std::uint64_t section_bytes = 0;
+  for (const Json& section : info["sections"])
+    section_bytes += section["bytes"].get<std::uint64_t>();
+  EXPECT_GT(section_bytes, file_bytes / 2);
+  EXPECT_LT(section_bytes, file_bytes);
+}
+
+TEST_F(Info, TablesTellTheSameToPeople) {
+  const Outcome run = run_mdprep({"info", baked()});
+  ASSERT_EQ(run.status, 0) << run.err;
+  EXPECT_EQ(run.err, "");
+  for (const char* text : {"triangles       396\n", "vertices        216\n", "bend", "swing",
+                           "first key", "section", "rest pose"})
+    EXPECT_THAT(run.out, HasSubstr(text));
+}
+
+}  // namespace
+}  // namespace mdk::test

@@ -1,0 +1,137 @@
+#include "preprocess/cli/model_checks.h"
+
+#include <gtest/gtest.h>
+
+#include "common/trace/technique.h"
+#include "preprocess/cli/hit_checks.h"
+#include "tests/cli/sample_mesh.h"
+#include "tests/cli/sample_model.h"
+
+namespace mdk {
+namespace {
+
+constexpr std::uint64_t kSeed = 20260726;
+
+/// A sound model with one thing wrong must fail exactly there.
+class ModelChecks : public testing::Test {
+ protected:
+  static void SetUpTestSuite() { sound_ = new ModelStorage(test::sample_model()); }
+  static void TearDownTestSuite() {
+    delete sound_;
+    sound_ = nullptr;
+  }
+
+  std::vector<CheckResult> boxes() const {
+    const Model view = model_.view();
+    SilentProgress silent;
+    return check_boxes(view, random_moments(view, 100, kSeed), silent);
+  }
+  std::vector<CheckResult> trees() const {
+    SilentProgress silent;
+    return check_trees(model_.view(), silent);
+  }
+  static std::vector<std::string> failed(const std::vector<CheckResult>& results) {
+    std::vector<std::string> names;
+    for (const CheckResult& result : results)
+      if (!result.passed()) names.push_back(result.name);
+    return names;
+  }
+
+  static ModelStorage* sound_;
+  ModelStorage model_ = *sound_;
+};
+ModelStorage* ModelChecks::sound_ = nullptr;
+
+using Names = std::vector<std::string>;
+
+TEST_F(ModelChecks, ASoundModelPassesWithEveryTriangleAtEveryMoment) {
+  const std::vector<CheckResult> results = boxes();
+  EXPECT_EQ(failed(results), Names{});
+  const std::uint64_t triangles = model_.triangles.size();
+  ASSERT_EQ(results.size(), 6u);
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(results[i].count, triangles * test::kSampleKeys);
+  for (int i = 3; i < 6; ++i) EXPECT_EQ(results[i].count, triangles * 100);
+  EXPECT_EQ(failed(trees()), Names{});
+}
+
+TEST_F(ModelChecks, AShrunkenFuzzyBoxIsSeenAndItsTriangleNamed) {
+  model_.fuzzy_boxes[5].hi = model_.fuzzy_boxes[5].center();
+  const std::vector<CheckResult> results = boxes();
+  EXPECT_EQ(failed(results), (Names{"fuzzy boxes hold their triangles at keys",
+                                    "fuzzy boxes hold their triangles between keys"}));
+  EXPECT_EQ(results[0].detail.rfind("first: triangle 5 at key ", 0), 0u) << results[0].detail;
+}
+
+TEST_F(ModelChecks, AWrongMapIsSeen) {
+  model_.local_from_world[model_.clusters.size() * 3].m[0][3] += 0.5f;
+  EXPECT_EQ(failed(boxes()), (Names{"fuzzy boxes hold their triangles at keys",
+                                    "fuzzy boxes hold their triangles between keys"}));
+}
+
+TEST_F(ModelChecks, AShrunkenClusterBoxIsSeen) {
+  for (std::size_t key = 0; key < model_.key_times.size(); ++key) {
+    Aabb& box = model_.cluster_world_boxes[key * model_.clusters.size() + 1];
+    box.lo.y += 0.01f;
+  }
+  EXPECT_EQ(failed(boxes()), (Names{"cluster boxes hold their triangles at keys",
+                                    "cluster boxes hold their triangles between keys"}));
+}
+
+TEST_F(ModelChecks, ShrunkenBoundsAreSeen) {
+  model_.bounds.hi.y -= 0.01f;
+  EXPECT_EQ(failed(boxes()),
+            (Names{"bounds hold the mesh at keys", "bounds hold the mesh between keys"}));
+}
+
+TEST_F(ModelChecks, AShrunkenLocalBoxIsSeen) {
+  model_.clusters[1].local_box.lo.x += 0.01f;
+  const Names names = failed(trees());
+  ASSERT_FALSE(names.empty());
+  EXPECT_EQ(names[0], "local boxes hold their fuzzy boxes");
+}
+
+TEST_F(ModelChecks, AReferenceToTheWrongTriangleIsSeenByTreesAndHits) {
+  const Cluster& cluster = model_.clusters[0];
+  for (std::uint32_t i = 0; i < cluster.ref_count; ++i) {
+    std::uint32_t& ref = model_.kd_refs[cluster.first_ref + i];
+    if (ref == cluster.first_triangle + 1) ref = cluster.first_triangle;
+  }
+  EXPECT_EQ(failed(trees()), (Names{"leaves list every triangle that reaches into them"}));
+  SilentProgress silent;
+  EXPECT_EQ(failed(check_hits(model_.view(), {}, {}, silent)),
+            (Names{"fuzzy-kdtree gives brute force's hits"}));
+}
+
+TEST_F(ModelChecks, EveryTechniqueAgreesOnASoundModel) {
+  const Model view = model_.view();
+  SilentProgress silent;
+  const std::vector<CheckResult> results =
+      check_hits(view, {}, random_moments(view, 2, kSeed), silent);
+  EXPECT_EQ(failed(results), Names{});
+  EXPECT_EQ(results.size() + 1, technique_table().size());
+  for (const CheckResult& result : results) EXPECT_EQ(result.count, 128u * 128 * 3 * (4 + 2));
+}
+
+TEST_F(ModelChecks, RandomMomentsVisitEveryIntervalAndNoGapBetweenClips) {
+  const Model view = model_.view();
+  ASSERT_EQ(interval_count(view), 30u + 15u);
+  const std::vector<KeyInterval> moments = random_moments(view, 45, kSeed);
+  std::vector<int> visits(view.key_count(), 0);
+  for (const KeyInterval& at : moments) {
+    EXPECT_EQ(at.key1, at.key0 + 1);
+    EXPECT_GT(at.s, 0);
+    EXPECT_LT(at.s, 1);
+    ++visits[at.key0];
+  }
+  for (std::uint32_t key = 0; key < view.key_count(); ++key)
+    EXPECT_EQ(visits[key], key == 30 || key == 46 ? 0 : 1) << key;
+}
+
+TEST_F(ModelChecks, RandomMomentsDependOnTheSeedAlone) {
+  const Model view = model_.view();
+  EXPECT_EQ(random_moments(view, 50, 1), random_moments(view, 50, 1));
+  EXPECT_NE(random_moments(view, 50, 1), random_moments(view, 50, 2));
+}
+
+}  // namespace
+}  // namespace mdk

@@ -1,0 +1,151 @@
+// mdprep render, started as a user does: are there pictures, and are they the same ones everywhere?
+#include <gmock/gmock.h>
+#include <png.h>
+
+#include <algorithm>
+#include <cstring>
+#include <nlohmann/json.hpp>
+
+#include "common/base/isa.h"
+#include "common/trace/technique.h"
+#include "tests/cli/baked_sample.h"
+#include "tests/cli/program_run.h"
+#include "tests/cli/sample_mesh.h"
+
+namespace mdk::test {
+namespace {
+
+using testing::HasSubstr;
+using Json = nlohmann::json;
+
+struct Picture {
+  std::uint32_t width = 0, height = 0;
+  std::vector<unsigned char> rgb;
+
+  bool operator==(const Picture&) const = default;
+  /// Pixels unlike the leftmost of their row, which shows background.
+  std::size_t drawn_pixels() const {
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < rgb.size(); i += 3) {
+      const std::size_t row = i / (3 * width) * (3 * width);
+      count += std::memcmp(&rgb[i], &rgb[row], 3) != 0;
+    }
+    return count;
+  }
+};
+
+Picture read_png(const std::string& path) {
+  png_image image = {};
+  image.version = PNG_IMAGE_VERSION;
+  if (png_image_begin_read_from_file(&image, path.c_str()) == 0) return {};
+  image.format = PNG_FORMAT_RGB;
+  Picture picture{image.width, image.height, std::vector<unsigned char>(PNG_IMAGE_SIZE(image))};
+  if (png_image_finish_read(&image, nullptr, picture.rgb.data(), 0, nullptr) == 0) return {};
+  return picture;
+}
+
+class Render : public BakedSample {
+ protected:
+  Outcome render(std::vector<std::string> options) const {
+    options.insert(options.begin(), {"render", baked()});
+    return run_mdprep(options);
+  }
+  /// One frame with these options.
+  Picture picture(std::vector<std::string> options) const {
+    options.insert(options.end(), {"-o", folder_.file("one.png"), "-q", "--size", "96x64"});
+    const Outcome run = render(options);
+    EXPECT_EQ(run.status, 0) << run.err;
+    return read_png(folder_.file("one.png"));
+  }
+};
+
+TEST_F(Render, MakesAPictureOfTheSizeThatWasAskedFor) {
+  const Outcome run = render({"-o", folder_.file("a.png"), "--frames", "12", "--size", "200x120"});
+  ASSERT_EQ(run.status, 0) << run.err;
+  EXPECT_EQ(run.out, "");
+  const Picture image = read_png(folder_.file("a.png"));
+  EXPECT_EQ(image.width, 200u);
+  EXPECT_EQ(image.height, 120u);
+  EXPECT_GT(image.drawn_pixels(), 200u * 120 / 50);
+  EXPECT_LT(image.drawn_pixels(), 200u * 120);
+}
+
+TEST_F(Render, NumbersFramesByTheirKeys) {
+  const Outcome run =
+      render({"-o", folder_.file("f_###.png"), "--frames", "29:33:2", "--size", "16x16", "-q"});
+  ASSERT_EQ(run.status, 0) << run.err;
+  EXPECT_EQ(run.err, "");
+  EXPECT_EQ(folder_.names(), (std::vector<std::string>{"f_029.png", "f_031.png", "f_033.png"}));
+}
+
+TEST_F(Render, WithoutFramesRendersEveryKeyOfTheClip) {
+  ASSERT_EQ(render({"-o", folder_.file("#.png"), "--clip", "swing", "--size", "8x8", "-q"}).status,
+            0);
+  EXPECT_EQ(folder_.names().size(), 16u);
+  EXPECT_EQ(folder_.names().front(), "31.png");
+}
+
+TEST_F(Render, ATimeAtAKeyShowsThatKeyAndOneBetweenShowsNeither) {
+  const Picture at_key = picture({"--frames", "35"});
+  const Picture same = picture({"--clip", "swing", "--time", "0.13333333333333333"});
+  const Picture between = picture({"--clip", "swing", "--time", "0.15"});
+  EXPECT_TRUE(at_key == same);
+  EXPECT_FALSE(at_key == between);
+  EXPECT_FALSE(between == picture({"--frames", "36"}));
+}
+
+TEST_F(Render, ShowsTheSamePixelsWithEveryTechniqueThreadCountAndInstructionSet) {
+  for (const std::vector<std::string>& moment :
+       {std::vector<std::string>{"--frames", "20"}, {"--time", "0.7123"}}) {
+    const Picture expected = picture(moment);
+    ASSERT_GT(expected.drawn_pixels(), 100u);
+    std::vector<std::vector<std::string>> ways = {{"--threads", "1"}, {"--threads", "2"}};
+    for (const TechniqueInfo& technique : technique_table())
+      ways.push_back({"--technique", std::string(technique.id)});
+    for (const std::string_view isa : available_isas())
+      if (isa != "scalar") ways.push_back({"--isa", std::string(isa)});
+    for (std::vector<std::string> way : ways) {
+      const std::string name = way[0] + " " + way[1];
+      way.insert(way.end(), moment.begin(), moment.end());
+      EXPECT_TRUE(picture(way) == expected) << name;
+    }
+  }
+}
+
+TEST_F(Render, ShadingAndCameraChangeThePicture) {
+  const Picture diffuse = picture({"--frames", "20"});
+  EXPECT_FALSE(picture({"--frames", "20", "--shading", "normals"}) == diffuse);
+  EXPECT_FALSE(picture({"--frames", "20", "--shading", "clusters"}) == diffuse);
+  const Picture away = picture({"--frames", "20", "--camera", "0 1 5 0 1 9 0 1 0 45"});
+  EXPECT_EQ(away.drawn_pixels(), 0u);
+}
+
+TEST_F(Render, StatsHaveARowPerFrameWithTimesAndCounts) {
+  const Outcome run = render({"-o", folder_.file("#.png"), "--frames", "0:4:2", "--size", "64x48",
+                              "--stats", folder_.file("stats.json"), "--threads", "2"});
+  ASSERT_EQ(run.status, 0) << run.err;
+  const Json stats = Json::parse(read_text(folder_.file("stats.json")));
+  EXPECT_EQ(stats["schema"], "mdprep-render/1");
+  EXPECT_EQ(stats["width"], 64);
+  EXPECT_EQ(stats["height"], 48);
+  EXPECT_EQ(stats["technique"], "fuzzy-kdtree");
+  EXPECT_EQ(stats["threads"], 2);
+  ASSERT_EQ(stats["frames"].size(), 3u);
+  for (int i = 0; i < 3; ++i) {
+    const Json& row = stats["frames"][i];
+    EXPECT_EQ(row["key"], 2 * i);
+    EXPECT_EQ(row["clip"], "bend");
+    EXPECT_EQ(row["rays"], 64 * 48);
+    EXPECT_GT(row["hits"], 0);
+    EXPECT_GT(row["node_visits_per_ray"], 0.0);
+    EXPECT_GT(row["triangle_tests_per_ray"], 0.0);
+    EXPECT_GT(row["clusters_per_ray"], 0.0);
+    const double sum = row["pose_ms"].get<double>() + row["update_ms"].get<double>() +
+                       row["trace_ms"].get<double>() + row["shade_ms"].get<double>();
+    EXPECT_DOUBLE_EQ(row["time_to_image_ms"], sum);
+    EXPECT_GT(sum, 0);
+  }
+}
+
+}  // namespace
+}  // namespace mdk::test

@@ -1,0 +1,25 @@
+#include "tests/cli/sample_model.h"
+
+#include "formats/gltf_reader.h"
+#include "preprocess/pipeline.h"
+#include "tests/cli/sample_mesh.h"
+#include "tests/cli/temp_folder.h"
+
+namespace mdk::test {
+
+PoseSequence sample_sequence() {
+  const TempFolder folder;
+  const std::string path = folder.file("sample.gltf");
+  write_sample_gltf(path);
+  SilentProgress silent;
+  return read_gltf(path, {}, silent).sequence;
+}
+
+ModelStorage sample_model() {
+  DecomposeOptions options;
+  options.clusters = 3;
+  SilentProgress silent;
+  return decompose(sample_sequence(), options, silent).model;
+}
+
+}  // namespace mdk::test
