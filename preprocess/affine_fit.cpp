@@ -1,0 +1,131 @@
+#include "preprocess/affine_fit.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace mdk {
+namespace {
+
+using Matrix = Eigen::Matrix3d;
+
+Matrix to_eigen(const double (&m)[3][3]) {
+  Matrix r;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) r(i, j) = m[i][j];
+  return r;
+}
+
+Eigen::Vector3d to_eigen(const Vec3d& v) { return {v.x, v.y, v.z}; }
+
+/// The similarity that maps source to target best; its rotation is proper. A little identity in the
+/// cross moments settles rotations that the points leave open (about a line, of a point).
+Matrix best_similarity(const Matrix& cross, const Matrix& source, double max_scale) {
+  const double size = cross.norm();
+  const Matrix settled = cross + Matrix::Identity() * (1e-9 * size);
+  if (!(size > std::numeric_limits<double>::min())) return Matrix::Identity();
+  const Eigen::JacobiSVD<Matrix> svd(settled, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  Matrix u = svd.matrixU();
+  if ((u * svd.matrixV().transpose()).determinant() < 0) u.col(2) = -u.col(2);
+  const Matrix rotation = u * svd.matrixV().transpose();
+  const double trace = source.trace();
+  const double scale = trace > 0 ? (rotation.transpose() * cross).trace() / trace : 1.0;
+  return rotation * std::clamp(scale, 1 / max_scale, max_scale);
+}
+
+double residual_of(const Matrix& map, const Matrix& cross, const Matrix& source,
+                   double target_trace) {
+  const double residual = target_trace - 2 * (map * cross.transpose()).trace() +
+                          (map * source * map.transpose()).trace();
+  return std::max(residual, 0.0);
+}
+
+/// Puts the singular values into a range with bounded condition; leaves a good map untouched.
+Matrix bounded(const Matrix& map, const FitOptions& options) {
+  // |det| <= s_min * (norm / sqrt 2)^2 bounds the smallest singular value from below cheaply.
+  const double norm = map.norm();
+  const double smallest = 2 * std::abs(map.determinant()) / (norm * norm);
+  if (smallest * options.max_condition >= norm && smallest * options.max_scale >= 1 &&
+      norm <= options.max_scale)
+    return map;
+  const Eigen::JacobiSVD<Matrix> svd(map, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  Eigen::Vector3d s = svd.singularValues();
+  const double largest = std::clamp(s(0), 1 / options.max_scale, options.max_scale);
+  const double floor = std::max(largest / options.max_condition, 1 / options.max_scale);
+  for (int i = 0; i < 3; ++i) s(i) = std::clamp(s(i), floor, largest);
+  return svd.matrixU() * s.asDiagonal() * svd.matrixV().transpose();
+}
+
+}  // namespace
+
+void MomentSum::add(const Vec3d& source, const Vec3d& target, double weight) {
+  if (weight_ == 0) {
+    source_origin_ = source;
+    target_origin_ = target;
+  }
+  weight_ += weight;
+  const Vec3d v = source - source_origin_, r = target - target_origin_;
+  const Vec3d wv = v * weight;
+  source_square_[0] += wv.x * v.x;
+  source_square_[1] += wv.y * v.y;
+  source_square_[2] += wv.z * v.z;
+  source_square_[3] += wv.x * v.y;
+  source_square_[4] += wv.y * v.z;
+  source_square_[5] += wv.z * v.x;
+  for (std::size_t i = 0; i < 3; ++i) {
+    source_[i] += wv[i];
+    target_[i] += weight * r[i];
+    for (std::size_t j = 0; j < 3; ++j) cross_[i][j] += r[i] * wv[j];
+  }
+  target_square_ += weight * dot(r, r);
+}
+
+FitMoments MomentSum::moments() const {
+  FitMoments m;
+  m.weight = weight_;
+  if (!(weight_ > 0)) return m;
+  const double square[3][3] = {{source_square_[0], source_square_[3], source_square_[5]},
+                               {source_square_[3], source_square_[1], source_square_[4]},
+                               {source_square_[5], source_square_[4], source_square_[2]}};
+  m.target_trace = target_square_;
+  for (std::size_t i = 0; i < 3; ++i) {
+    m.source_mean[i] = source_origin_[i] + source_[i] / weight_;
+    m.target_mean[i] = target_origin_[i] + target_[i] / weight_;
+    m.target_trace -= target_[i] * target_[i] / weight_;
+    for (std::size_t j = 0; j < 3; ++j) {
+      m.source[i][j] = square[i][j] - source_[i] * source_[j] / weight_;
+      m.cross[i][j] = cross_[i][j] - target_[i] * source_[j] / weight_;
+    }
+  }
+  m.target_trace = std::max(m.target_trace, 0.0);
+  return m;
+}
+
+AffineFit fit_affine(const FitMoments& moments, const FitOptions& options) {
+  const Matrix source = to_eigen(moments.source), cross = to_eigen(moments.cross);
+  const Matrix similarity = best_similarity(cross, source, options.max_scale);
+  const auto solve = [&](double ridge) -> Matrix {
+    if (!(ridge > 0)) return similarity;
+    const Matrix damped = source + ridge * Matrix::Identity();
+    return damped.ldlt().solve((cross + ridge * similarity).transpose()).transpose();
+  };
+
+  // First nearly unregularised; what is left over tells how far the points can be trusted.
+  const double least = 1e-12 * source.trace() + moments.weight * options.noise * options.noise;
+  Matrix map = solve(least);
+  const double left = residual_of(map, cross, source, moments.target_trace);
+  if (left > 0 && options.ridge > 0) map = solve(least + options.ridge * left);
+  map = bounded(map, options);
+
+  AffineFit fit;
+  fit.residual = residual_of(map, cross, source, moments.target_trace);
+  const Eigen::Vector3d shift = to_eigen(moments.target_mean) - map * to_eigen(moments.source_mean);
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) fit.target_from_source.m[i][j] = map(i, j);
+    fit.target_from_source.m[i][3] = shift(i);
+  }
+  return fit;
+}
+
+}  // namespace mdk

@@ -1,0 +1,70 @@
+// Cost: the expected work of a ray that meets the model, the one measure behind every decision
+// (docs/method.md, cost). Areas count in world space: a cluster's map does not keep their ratios,
+// so local boxes are mapped back. A box becomes a parallelepiped, whose area is closed form:
+//
+//     edges X e_x, X e_y, X e_z with X = L^-1, L the linear part of local_from_world:
+//     side spanned by x and y:  e_x e_y |row z of L| / |det L|,  and so on round.
+//
+// A nearly singular map makes tiny local boxes that are huge in the world; one such key in a
+// thousand must not decide for all. So the mean over keys is winsorised: a weight above `outlier`
+// times the median over keys counts as that.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "common/math/aabb.h"
+#include "common/math/affine3.h"
+#include "common/structures/kd_tree_builder.h"
+
+namespace mdk {
+
+struct CostOptions {
+  double transform_cost = 6;  ///< of entering a cluster, in units of one triangle test
+  double outlier = 8;         ///< see above; at least 1
+};
+
+/// World area of a local box with extent e, as weights of its sides.
+AreaWeights world_area_weights(const Affine3d& local_from_world);
+
+/// Mean over keys of `values`, each above `outlier` times their median replaced by that.
+double winsorised_mean(std::span<const double> values, double outlier);
+
+/// Per-cluster weights averaged over keys, in units of the model's box area at each key: what the
+/// fuzzy tree of the cluster is built with. `maps` and `model_areas`: one per key; keys at which
+/// the model has no area are left out.
+AreaWeights mean_area_weights(std::span<const Affine3d> maps, std::span<const double> model_areas,
+                              const CostOptions& options);
+
+/// Sums over boxes of the products of their extents, so that any weights give the summed area.
+struct FaceSums {
+  double xy = 0, yz = 0, zx = 0;
+
+  template <class T>
+  void add(const BasicAabb<T>& box) {
+    if (box.empty()) return;
+    const double ex = static_cast<double>(box.hi.x) - box.lo.x;
+    const double ey = static_cast<double>(box.hi.y) - box.lo.y;
+    const double ez = static_cast<double>(box.hi.z) - box.lo.z;
+    xy += ex * ey;
+    yz += ey * ez;
+    zx += ez * ex;
+  }
+  double area(const AreaWeights& w) const { return 2 * (w.xy * xy + w.yz * yz + w.zx * zx); }
+};
+
+/// One cluster as the cost sees it.
+struct ClusterWork {
+  FaceSums fuzzy_boxes;        ///< of its triangles, in its local basis
+  AreaWeights weights;         ///< from mean_area_weights
+  double hit_probability = 0;  ///< mean over keys of its world box's area / the model's
+};
+
+/// Sum over triangles of the fuzzy boxes' mean areas in units of the model's: the triangle boxes a
+/// ray that meets the model is expected to meet.
+double fuzzy_area(std::span<const ClusterWork> clusters);
+
+/// fuzzy_area plus the price of the clusters met.
+double expected_work(std::span<const ClusterWork> clusters, const CostOptions& options);
+
+}  // namespace mdk

@@ -1,0 +1,216 @@
+#include "preprocess/fuzzy_boxes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+
+#include "common/base/parallel.h"
+
+namespace mdk {
+namespace {
+
+constexpr std::uint32_t kSlotsPerChunk = 512;
+
+/// Half a unit in the last place, relative; a little more, so that second-order terms are covered.
+constexpr double kFloatRounding = 0x1.01p-24;
+/// Rounding of the maps' interpolation and of these computations, relative to |A| |v|; generous,
+/// since it is nothing beside float's.
+constexpr double kDoubleRounding = 0x1p-40;
+constexpr double kSmallest = std::numeric_limits<float>::denorm_min();
+
+/// Largest error of one coordinate of a vertex that is interpolated in float.
+double lerp_error(double v0, double v1) {
+  return kFloatRounding * (2 * std::abs(v1 - v0) + std::max(std::abs(v0), std::abs(v1))) +
+         2 * kSmallest;
+}
+
+Vec3d lerp_error(const Vec3d& v0, const Vec3d& v1) {
+  return {lerp_error(v0.x, v1.x), lerp_error(v0.y, v1.y), lerp_error(v0.z, v1.z)};
+}
+
+Vec3d largest_sizes(const Vec3d& a, const Vec3d& b) {
+  return {std::max(std::abs(a.x), std::abs(b.x)), std::max(std::abs(a.y), std::abs(b.y)),
+          std::max(std::abs(a.z), std::abs(b.z))};
+}
+
+/// |A| of the entrywise larger of two maps.
+Affine3d largest_entries(const Affine3d& a, const Affine3d& b) {
+  Affine3d r;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 4; ++j) r.m[i][j] = std::max(std::abs(a.m[i][j]), std::abs(b.m[i][j]));
+  return r;
+}
+
+void extend_padded(Aabbd& box, const Vec3d& p, const Vec3d& pad) {
+  box.extend(p - pad);
+  box.extend(p + pad);
+}
+
+/// The value at which a quadratic through p0 and p2 with middle control value p1 turns, or p0 where
+/// it does not turn in between.
+double turning_value(double p0, double p1, double p2) {
+  const double bend = (p0 - p1) + (p2 - p1);
+  const double s = bend != 0 ? (p0 - p1) / bend : 0;
+  return s > 0 && s < 1 ? p0 + s * (2 * (p1 - p0) + s * bend) : p0;
+}
+
+Vec3d turning_point(const Vec3d& p0, const Vec3d& p1, const Vec3d& p2) {
+  return {turning_value(p0.x, p1.x, p2.x), turning_value(p0.y, p1.y, p2.y),
+          turning_value(p0.z, p1.z, p2.z)};
+}
+
+/// A cluster's maps at two keys of a clip and half-way.
+struct MapInterval {
+  Affine3d at0, half, at1;
+  Affine3d sizes;  ///< no entry of any map in between is larger
+
+  MapInterval(const Affine3f& map0, const Affine3f& map1)
+      : at0(to_double(map0)),
+        half(interpolate(map0, map1, 0.5f)),
+        at1(to_double(map1)),
+        sizes(largest_entries(at0, at1)) {}
+};
+
+/// Boxes of some vertices of one cluster, grown key by key.
+class SlotBoxes {
+ public:
+  SlotBoxes(std::span<const std::uint32_t> vertices, std::span<Aabbd> boxes)
+      : vertices_(vertices), boxes_(boxes) {}
+
+  /// The positions at one key, which are exact but for the rounding of doubles.
+  void add_key(std::span<const Vec3f> pose, const Affine3d& map) {
+    const Affine3d sizes = largest_entries(map, map);
+    for (std::size_t i = 0; i < vertices_.size(); ++i) {
+      const Vec3d v = to_double(pose[vertices_[i]]);
+      extend_padded(boxes_[i], map.point(v), sizes.point(largest_sizes(v, v)) * kDoubleRounding);
+    }
+  }
+
+  /// All times from one key to the next.
+  void add_interval(std::span<const Vec3f> pose0, std::span<const Vec3f> pose1,
+                    const MapInterval& maps) {
+    for (std::size_t i = 0; i < vertices_.size(); ++i) {
+      const Vec3d v0 = to_double(pose0[vertices_[i]]), v1 = to_double(pose1[vertices_[i]]);
+      const Vec3d p0 = maps.at0.point(v0), p2 = maps.at1.point(v1);
+      const Vec3d p1 = maps.half.point((v0 + v1) * 0.5) * 2.0 - (p0 + p2) * 0.5;
+      const Vec3d pad = maps.sizes.vector(lerp_error(v0, v1)) +
+                        maps.sizes.point(largest_sizes(v0, v1)) * kDoubleRounding;
+      extend_padded(boxes_[i], p0, pad);
+      extend_padded(boxes_[i], turning_point(p0, p1, p2), pad);
+      extend_padded(boxes_[i], p2, pad);
+    }
+  }
+
+ private:
+  std::span<const std::uint32_t> vertices_;
+  std::span<Aabbd> boxes_;
+};
+
+/// Runs of slots that lie in one cluster each.
+struct SlotRun {
+  std::uint32_t cluster, begin, end;
+};
+
+std::vector<SlotRun> split_slots(const ClusterMembers& members) {
+  std::vector<SlotRun> runs;
+  for (std::uint32_t c = 0; c < members.cluster_count(); ++c)
+    for (std::uint32_t s = members.vertex_begin[c]; s < members.vertex_begin[c + 1];
+         s += kSlotsPerChunk)
+      runs.push_back({c, s, std::min(s + kSlotsPerChunk, members.vertex_begin[c + 1])});
+  return runs;
+}
+
+void fill_run(const PoseSequence& sequence, std::span<const Affine3f> local_from_world,
+              std::size_t clusters, const SlotRun& run, BetweenKeys between, SlotBoxes boxes) {
+  const auto map_at = [&](std::uint32_t key) -> const Affine3f& {
+    return local_from_world[key * clusters + run.cluster];
+  };
+  for (const Clip& clip : sequence.clips) {
+    boxes.add_key(sequence.pose(clip.first_key), to_double(map_at(clip.first_key)));
+    for (std::uint32_t key = clip.first_key + 1; key < clip.first_key + clip.key_count; ++key) {
+      if (between == BetweenKeys::kBound)
+        boxes.add_interval(sequence.pose(key - 1), sequence.pose(key),
+                           {map_at(key - 1), map_at(key)});
+      else
+        boxes.add_key(sequence.pose(key), to_double(map_at(key)));
+    }
+  }
+}
+
+/// Box of a cluster's vertices at one key and the largest rounding errors of the interval that ends
+/// there (nothing at a clip's first key).
+struct WorldExtent {
+  Aabbd box;
+  Vec3d error;
+};
+
+WorldExtent world_extent(const PoseSequence& sequence, std::span<const std::uint32_t> vertices,
+                         std::uint32_t key, std::uint32_t previous) {
+  const std::span<const Vec3f> now = sequence.pose(key), before = sequence.pose(previous);
+  WorldExtent extent;
+  for (const std::uint32_t v : vertices) {
+    const Vec3d p = to_double(now[v]);
+    extent.box.extend(p);
+    if (previous != key)
+      extent.error = largest_sizes(extent.error, lerp_error(to_double(before[v]), p));
+  }
+  return extent;
+}
+
+}  // namespace
+
+std::vector<Aabb> fuzzy_boxes(const PoseSequence& sequence, const ClusterMembers& members,
+                              std::span<const Affine3f> local_from_world, BetweenKeys between) {
+  std::vector<Aabbd> slots(members.vertices.size());
+  const std::vector<SlotRun> runs = split_slots(members);
+  parallel_chunks(runs.size(), 1, [&](std::size_t i, std::size_t) {
+    const std::size_t count = runs[i].end - runs[i].begin;
+    fill_run(sequence, local_from_world, members.cluster_count(), runs[i], between,
+             {std::span(members.vertices).subspan(runs[i].begin, count),
+              std::span(slots).subspan(runs[i].begin, count)});
+  });
+  std::vector<Aabb> boxes(members.triangles.size());
+  for (std::size_t t = 0; t < boxes.size(); ++t) {
+    Aabbd box;
+    for (std::size_t corner = 0; corner < 3; ++corner)
+      box.extend(slots[members.corner_slots[3 * t + corner]]);
+    boxes[t] = round_outward(box);
+  }
+  return boxes;
+}
+
+std::vector<Aabb> cluster_world_boxes(const PoseSequence& sequence, const ClusterMembers& members) {
+  const std::size_t clusters = members.cluster_count(), keys = sequence.key_count();
+  std::vector<WorldExtent> extents(keys * clusters);
+  std::vector<std::uint32_t> previous(keys, 0);
+  for (std::uint32_t key = 0; key < keys; ++key) previous[key] = key == 0 ? 0 : key - 1;
+  for (const Clip& clip : sequence.clips) previous[clip.first_key] = clip.first_key;
+
+  parallel_chunks(keys, 4, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t key = begin; key < end; ++key)
+      for (std::size_t c = 0; c < clusters; ++c)
+        extents[key * clusters + c] =
+            world_extent(sequence,
+                         std::span(members.vertices)
+                             .subspan(members.vertex_begin[c],
+                                      members.vertex_begin[c + 1] - members.vertex_begin[c]),
+                         static_cast<std::uint32_t>(key), previous[key]);
+  });
+
+  std::vector<Aabb> boxes(extents.size());
+  for (std::size_t key = 0; key < keys; ++key)
+    for (std::size_t c = 0; c < clusters; ++c) {
+      const WorldExtent& here = extents[key * clusters + c];
+      Vec3d error = here.error;
+      if (key + 1 < keys && previous[key + 1] == key)
+        error = largest_sizes(error, extents[(key + 1) * clusters + c].error);
+      // Once for the vertices; twice for the box's own interpolation, since its bound may come from
+      // one vertex and its change from another.
+      const Vec3d pad = error * (3 + 0x1p-10);
+      boxes[key * clusters + c] = round_outward({here.box.lo - pad, here.box.hi + pad});
+    }
+  return boxes;
+}
+
+}  // namespace mdk
