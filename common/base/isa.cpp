@@ -56,7 +56,7 @@ void limit_isa(std::string_view name) {
     return;
   }
   std::string known;
-  for (std::string_view isa : available_isas()) known += " " + std::string(isa);
+  for (const std::string_view isa : available_isas()) known.append(" ").append(isa);
   throw Error(ErrorCode::kUsage,
               "--isa " + std::string(name) + ": no such instruction set; this machine has" + known);
 }

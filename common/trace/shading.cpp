@@ -58,7 +58,7 @@ ShadingMode find_shading(std::string_view id) {
   std::string known;
   for (const ShadingInfo& row : shading_table()) {
     if (row.id == id) return row.mode;
-    known += (known.empty() ? "" : ", ") + std::string(row.id);
+    known.append(known.empty() ? "" : ", ").append(row.id);
   }
   throw Error(ErrorCode::kUsage,
               "no shading mode is called '" + std::string(id) + "'; there are " + known);

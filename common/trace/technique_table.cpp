@@ -26,7 +26,7 @@ const TechniqueInfo& find_technique(std::string_view id) {
   std::string known;
   for (const TechniqueInfo& row : technique_table()) {
     if (row.id == id) return row;
-    known += (known.empty() ? "" : ", ") + std::string(row.id);
+    known.append(known.empty() ? "" : ", ").append(row.id);
   }
   throw Error(ErrorCode::kUsage,
               "no technique is called '" + std::string(id) + "'; there are " + known);

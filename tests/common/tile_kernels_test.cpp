@@ -6,6 +6,8 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cmath>
+#include <limits>
 #include <random>
 #include <vector>
 
@@ -38,7 +40,7 @@ class Trial {
     const TriangleSoup soup{triangles_.data(), positions_.data(),
                             static_cast<std::uint32_t>(triangles_.size())};
     const Bvh bvh = build_bvh(boxes_, {.max_leaf = 1});
-    const KdTree kd = build_kd_tree(boxes_, 0, {.intersect_cost = 50});
+    const KdTree kd = build_kd_tree(boxes_, 0, {.intersect_cost = 50.0f});
     int different = 0;
     for (std::uint32_t y = 0; y < kHeight; y += kTileSide)
       for (std::uint32_t x = 0; x < kWidth; x += kTileSide) {
@@ -102,6 +104,27 @@ TEST_P(TileKernels, TrianglesInThePlaneOfAPixelColumnHitOnlyWhereTheirBoxIs) {
       trial.add(on_column(row + reach * unit(), between(1, 5)),
                 on_column(row + reach * unit(), between(1, 5)),
                 on_column(row + reach * unit(), between(1, 5)));
+    mismatches += trial.mismatches(camera);
+  }
+  EXPECT_EQ(mismatches, 0);
+}
+
+TEST_P(TileKernels, SliversThatReachBehindTheEyeHitOnlyWhereTheirBoxIs) {
+  int mismatches = 0;
+  for (int i = 0; i < 3000; ++i) {
+    const Camera camera{.eye = {unit(), unit(), unit()},
+                        .target = {unit(), unit(), unit()},
+                        .vertical_fov_deg = between(20, 160)};
+    const PinholeRays rays = make_pinhole_rays(camera, kWidth, kHeight);
+    const float column = std::floor(between(0, kWidth)) + 0.5f;
+    Trial trial;
+    for (int k = 0; k < 6; ++k) {
+      const auto corner = [&] {
+        return rays.origin + rays.direction(column, kHeight * unit()) * (3 * unit());
+      };
+      const Vec3f a = corner(), b = corner();
+      trial.add(a, b, k % 2 == 0 ? corner() : a + (b - a) * unit());
+    }
     mismatches += trial.mismatches(camera);
   }
   EXPECT_EQ(mismatches, 0);

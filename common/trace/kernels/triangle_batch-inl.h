@@ -12,10 +12,12 @@
 //        / + \         depth t = N.a / N.(X, Y, 1) with N = (b - a) x (c - a),
 //       a-----b        clamped to the depths of the corners.
 //
-// A hit must also lie within a quarter pixel of the corners' image bounds. For triangles of sane
-// shape both clauses change nothing; for slivers, whose edge functions are all rounding, they keep
-// the hit inside what any box around the triangle shows, which is what makes structures exact.
-// Multiplications and additions are rounded apart (no fused ones): the same hits on every machine.
+// A hit must also lie within a quarter pixel of the corners' image bounds; where the triangle
+// reaches behind the eye and has none, one of its corners must be on the inner side of each of the
+// tile's planes. For triangles of sane shape these clauses change nothing; for slivers, whose edge
+// functions are all rounding, they keep the hit inside what any box around the triangle shows,
+// which is what makes structures exact. Multiplications and additions are rounded apart (no fused
+// ones): the same hits on every machine.
 #include <limits>
 
 #include "common/trace/kernels/tile_kernels.h"
@@ -166,7 +168,28 @@ class TriangleBatch {
       return hn::Or(hn::Lt(hn::Load(d, high), hn::Set(d, begin)),
                     hn::Gt(hn::Load(d, low), hn::Set(d, begin + (kTileSide - 1))));
     };
-    return hn::Or(outside(low_x_, high_x_, tile_.x), outside(low_y_, high_y_, tile_.y));
+    const auto missed =
+        hn::Or(outside(low_x_, high_x_, tile_.x), outside(low_y_, high_y_, tile_.y));
+    if (hn::AllTrue(d, in_front)) return missed;
+    return hn::Or(missed, misses_sides(a, b, c));
+  }
+
+  /// True where all corners are on the outer side of one of the tile's four planes.
+  HWY_INLINE hn::Mask<FloatTag> misses_sides(const Points& a, const Points& b,
+                                             const Points& c) const {
+    const FloatTag d;
+    const auto one_side = [&](FloatVec p, FloatVec q, FloatVec r, std::uint32_t first) {
+      const auto offset = [&](FloatVec coordinate, FloatVec depth, std::uint32_t edge) {
+        return hn::Sub(coordinate, hn::Mul(depth, hn::Set(d, static_cast<float>(edge))));
+      };
+      const auto below =
+          hn::Max(hn::Max(offset(p, a.z, first), offset(q, b.z, first)), offset(r, c.z, first));
+      const std::uint32_t last = first + kTileSide;
+      const auto above =
+          hn::Min(hn::Min(offset(p, a.z, last), offset(q, b.z, last)), offset(r, c.z, last));
+      return hn::Or(hn::Lt(below, hn::Zero(d)), hn::Gt(above, hn::Zero(d)));
+    };
+    return hn::Or(one_side(a.x, b.x, c.x, tile_.x), one_side(a.y, b.y, c.y, tile_.y));
   }
 
   /// True where some edge has all pixel centres of the tile strictly on its outer side, for both
