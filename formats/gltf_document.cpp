@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <exception>
-#include <limits>
+#include <new>
 #include <utility>
 
 #include "common/base/error.h"
@@ -81,6 +81,8 @@ tinygltf::Model parse(const Bytes& bytes, BufferFiles& files) {
             ? loader.LoadBinaryFromMemory(&model, &error, &warning, bytes.data(), size, "")
             : loader.LoadASCIIFromString(&model, &error, &warning,
                                          reinterpret_cast<const char*>(bytes.data()), size, "");
+  } catch (const std::bad_alloc&) {
+    throw;
   } catch (const std::exception&) {
     error = "its parts do not fit together";
   }

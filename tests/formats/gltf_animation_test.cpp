@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "common/base/parallel.h"
 #include "tests/formats/gltf_builder.h"
 #include "tests/formats/gltf_expect.h"
 
@@ -155,10 +156,12 @@ TEST(GltfAnimation, TheEndIsAddedWhereTheGridMissesIt) {
   const PoseSequence s = read_built(m.b, 2).sequence;
   EXPECT_THAT(s.key_times, Pointwise(DoubleNear(1e-12), {0.0, 0.5, 1.0, 1.25}));
   expect_pose(s, 3, shifted(5, 0, 0));
-  // 4 s at 30 a second ends on the grid in spite of rounding: no key is added.
+  // 4.2 s at 30 a second ends on the grid in spite of rounding: no key is added.
   Moved on_grid;
   on_grid.animate("translation", {0, 4.2f}, {0, 0, 0, 1, 0, 0}, "LINEAR");
-  EXPECT_EQ(read_built(on_grid.b, 30).sequence.key_count(), 127u);
+  const PoseSequence t = read_built(on_grid.b, 30).sequence;
+  EXPECT_EQ(t.key_count(), 127u);
+  EXPECT_DOUBLE_EQ(t.key_times.back(), 126 / 30.0);
 }
 
 TEST(GltfAnimation, TracksHoldTheirEndsWhereOthersRunOn) {
@@ -243,6 +246,17 @@ TEST(GltfAnimation, MorphWeightsAreAnimatedPerTarget) {
   expect_pose(s, 0, {{0, 0, 0}, {5, 0, 0}, {0, 1, 0}});
   expect_pose(s, 1, {{0, 0, 1}, {4, 0, 1}, {0, 1, 1}});
   expect_pose(s, 2, {{0, 0, 2}, {3, 0, 2}, {0, 1, 2}});
+}
+
+TEST(GltfAnimation, DoesNotDependOnTheNumberOfThreads) {
+  Moved m;
+  m.animate("rotation", {0, 1, 3}, {0, 0, 0, 1, 0.5f, 0.5f, 0.5f, 0.5f, 0, 0, kHalf, kHalf},
+            "LINEAR");
+  const auto read_with = [&](int threads) {
+    const ThreadLimit limit(threads);
+    return read_built(m.b, 100).sequence.positions;
+  };
+  EXPECT_EQ(read_with(1), read_with(4));
 }
 
 TEST(GltfAnimation, RefusesKeysThatDoNotFitTheirTimes) {
