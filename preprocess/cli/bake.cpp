@@ -165,7 +165,8 @@ CommandBody add_bake_command(CLI::App& command) {
   command
       .add_option("INPUT", arguments->input,
                   "An animated mesh: .gltf or .glb (skins, morph targets, node animation).")
-      ->required();
+      ->required()
+      ->type_name("");
   command
       .add_option("-o,--output", arguments->output,
                   "The file to write. It appears whole or not at all.")

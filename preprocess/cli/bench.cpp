@@ -130,6 +130,7 @@ CommandBody add_bench_command(CLI::App& command) {
   const auto arguments = std::make_shared<BenchArguments>();
   command.add_option("FILE", arguments->inputs, ".mdk files made by 'mdprep bake'.")
       ->required()
+      ->type_name("")
       ->expected(1, -1);
   add_measuring_options(command, *arguments);
   add_view_options(command, arguments->view);

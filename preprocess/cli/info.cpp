@@ -155,7 +155,9 @@ void run_info(const InfoArguments& arguments) {
 
 CommandBody add_info_command(CLI::App& command) {
   const auto arguments = std::make_shared<InfoArguments>();
-  command.add_option("FILE", arguments->input, "A .mdk file made by 'mdprep bake'.")->required();
+  command.add_option("FILE", arguments->input, "A .mdk file made by 'mdprep bake'.")
+      ->required()
+      ->type_name("");
   command.add_flag("--json", arguments->json, "Print JSON (mdprep-info/1) instead of tables.");
   add_machine_options(command, arguments->machine);
   command.footer(

@@ -64,7 +64,8 @@ int parse_and_run(int argc, char** argv) {
   CLI::App app{"mdprep prepares animated meshes for ray tracing, and renders and measures them.",
                "mdprep"};
   app.set_help_flag("-h,--help", "Print this and exit.");
-  app.set_version_flag("--version", "mdprep " MDK_VERSION);
+  app.set_version_flag("--version", "mdprep " MDK_VERSION)
+      ->description("Print the version and exit.");
   app.require_subcommand(1);
   app.footer(kExitStatuses);
   const std::vector<Subcommand> subcommands = add_subcommands(app);

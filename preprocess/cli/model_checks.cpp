@@ -109,45 +109,33 @@ void record(CheckResult& result, std::uint64_t looked_at, const Failures& failur
   result.failures += failures.count;
 }
 
-/// The cell of a node that is still to be visited.
-struct Cell {
-  std::uint32_t node;
-  Aabb box;
-};
+/// Visits the leaves of a tree that one triangle's box reaches into.
+class LeafWalk {
+ public:
+  LeafWalk(const KdTreeView& tree, const Aabb& box, std::uint32_t triangle)
+      : tree_(tree), box_(box), triangle_(triangle) {}
 
-/// Whether they share more than a common side.
-bool overlap_inside(const Aabb& a, const Aabb& b) {
-  return a.lo.x < b.hi.x && b.lo.x < a.hi.x && a.lo.y < b.hi.y && b.lo.y < a.hi.y &&
-         a.lo.z < b.hi.z && b.lo.z < a.hi.z;
-}
-
-/// Leaves that a triangle's box reaches into, and how many of them do not list it.
-struct LeafCount {
-  std::uint64_t leaves = 0, missing = 0;
-};
-
-LeafCount count_leaves(const KdTreeView& tree, const Aabb& box, std::uint32_t triangle) {
-  LeafCount found;
-  std::vector<Cell> open = {{0, tree.bounds}};
-  while (!open.empty()) {
-    const Cell cell = open.back();
-    open.pop_back();
-    if (!overlap_inside(cell.box, box)) continue;
-    const KdNode& node = tree.nodes[cell.node];
+  /// Whether every leaf below `node` that must list the triangle does. A box that lies flat in a
+  /// split plane belongs to either side: a ray that meets the plane visits both.
+  bool is_listed(std::uint32_t node_index) {
+    const KdNode& node = tree_.nodes[node_index];
     if (node.is_leaf()) {
-      const auto refs = tree.refs.subspan(node.first_ref(), node.ref_count());
-      ++found.leaves;
-      found.missing += std::find(refs.begin(), refs.end(), triangle) == refs.end();
-      continue;
+      const auto refs = tree_.refs.subspan(node.first_ref(), node.ref_count());
+      ++leaves_;
+      return std::find(refs.begin(), refs.end(), triangle_) != refs.end();
     }
-    Cell below{node.below(), cell.box}, above{node.above(), cell.box};
-    below.box.hi[node.axis()] = std::min(below.box.hi[node.axis()], node.split());
-    above.box.lo[node.axis()] = std::max(above.box.lo[node.axis()], node.split());
-    open.push_back(below);
-    open.push_back(above);
+    const float lo = box_.lo[node.axis()], hi = box_.hi[node.axis()], split = node.split();
+    if (lo == split && hi == split) return is_listed(node.below()) || is_listed(node.above());
+    return (lo >= split || is_listed(node.below())) && (hi <= split || is_listed(node.above()));
   }
-  return found;
-}
+  std::uint64_t leaves() const { return leaves_; }
+
+ private:
+  const KdTreeView& tree_;
+  const Aabb& box_;
+  std::uint32_t triangle_;
+  std::uint64_t leaves_ = 0;
+};
 
 void check_tree(const Model& model, const Cluster& cluster, CheckResult& boxes,
                 CheckResult& leaves) {
@@ -157,10 +145,10 @@ void check_tree(const Model& model, const Cluster& cluster, CheckResult& boxes,
     const Aabb& box = model.fuzzy_boxes[t];
     Failures outside, unlisted;
     if (!cluster.local_box.contains(box)) outside.add(t);
-    const LeafCount found = count_leaves(tree, box, t);
-    if (found.missing > 0 || found.leaves == 0) unlisted.add(t);
+    LeafWalk walk(tree, box, t);
+    if (!walk.is_listed(0)) unlisted.add(t);
     record(boxes, 1, outside, "any time");
-    record(leaves, std::max<std::uint64_t>(1, found.leaves), unlisted, "any time");
+    record(leaves, walk.leaves(), unlisted, "any time");
   }
 }
 

@@ -209,7 +209,9 @@ void add_frame_options(CLI::App& command, RenderArguments& arguments) {
 
 CommandBody add_render_command(CLI::App& command) {
   const auto arguments = std::make_shared<RenderArguments>();
-  command.add_option("FILE", arguments->input, "A .mdk file made by 'mdprep bake'.")->required();
+  command.add_option("FILE", arguments->input, "A .mdk file made by 'mdprep bake'.")
+      ->required()
+      ->type_name("");
   command
       .add_option("-o,--output", arguments->output,
                   "The PNG to write. A run of # becomes the number of the key, padded with zeros;\n"

@@ -77,12 +77,13 @@ VerifyReport verify_file(const MdkFile& file, const VerifyArguments& arguments,
   const Model& model = file.model();
   VerifyReport report;
   report.seed = parse_count("--seed", arguments.seed, {0, 0xffffffffu});
-  report.samples = parse_samples(arguments.samples, model);
   progress.report("checksums", 0);
   report.add({{"offsets, links and ranges are sound", file.sections().size(), 0, ""}});
   report.add({check_bytes(file)});
 
-  const std::vector<KeyInterval> between = random_moments(model, report.samples, report.seed);
+  const std::vector<KeyInterval> between =
+      random_moments(model, parse_samples(arguments.samples, model), report.seed);
+  report.samples = static_cast<std::uint32_t>(between.size());
   ProgressPart boxes(progress, 0.05, 0.4), trees(progress, 0.4, 0.45), hits(progress, 0.45, 0.95);
   report.add(check_boxes(model, between, boxes));
   report.add(check_trees(model, trees));
@@ -157,7 +158,9 @@ void run_verify(const VerifyArguments& arguments) {
 
 CommandBody add_verify_command(CLI::App& command) {
   const auto arguments = std::make_shared<VerifyArguments>();
-  command.add_option("FILE", arguments->input, "A .mdk file made by 'mdprep bake'.")->required();
+  command.add_option("FILE", arguments->input, "A .mdk file made by 'mdprep bake'.")
+      ->required()
+      ->type_name("");
   CLI::Option* source =
       command
           .add_option("--source", arguments->source_path,

@@ -6,9 +6,11 @@
 #include <sstream>
 
 #include "common/trace/technique.h"
+#include "formats/mdk_writer.h"
 #include "tests/cli/baked_sample.h"
 #include "tests/cli/program_run.h"
 #include "tests/cli/sample_mesh.h"
+#include "tests/cli/sample_model.h"
 
 namespace mdk::test {
 namespace {
@@ -74,6 +76,21 @@ TEST_F(Bench, CountsAreTheSameEveryTime) {
     return found;
   };
   EXPECT_EQ(counts("1"), counts("2"));
+}
+
+TEST_F(Bench, AMismatchIsReportedAndIsAnInternalFault) {
+  ModelStorage model = sample_model();
+  const Cluster& cluster = model.clusters[0];
+  for (std::uint32_t i = 0; i < cluster.ref_count; ++i)  // the tree no longer knows triangle 1
+    if (model.kd_refs[cluster.first_ref + i] == 1) model.kd_refs[cluster.first_ref + i] = 0;
+  write_mdk(model.view(), folder_.file("wrong.mdk"));
+  const Outcome run = run_mdprep({"bench", folder_.file("wrong.mdk"), "--size", "128x128",
+                                  "--rounds", "1", "-q", "--json", folder_.file("b.json")});
+  EXPECT_EQ(run.status, 1);
+  EXPECT_TRUE(is_one_sentence(run.err)) << run.err;
+  const Json report = Json::parse(read_text(folder_.file("b.json")));
+  for (const Json& row : report["models"][0]["techniques"])
+    EXPECT_EQ(row["hit_mismatches"] > 0, row["id"] == "fuzzy-kdtree") << row["id"];
 }
 
 TEST_F(Bench, StdoutHoldsTheTableAlone) {

@@ -102,6 +102,28 @@ TEST_F(ModelChecks, AReferenceToTheWrongTriangleIsSeenByTreesAndHits) {
             (Names{"fuzzy-kdtree gives brute force's hits"}));
 }
 
+TEST_F(ModelChecks, AFlatBoxInASplitPlaneMayStandOnEitherSideButNotOnNone) {
+  const auto passes_with = [&](std::vector<std::uint32_t> below, std::vector<std::uint32_t> above) {
+    ModelStorage flat = *sound_;
+    flat.clusters.resize(1);
+    Cluster& cluster = flat.clusters[0];
+    cluster = {0, 1, 0, 3, 0, static_cast<std::uint32_t>(below.size() + above.size()), {}, {}};
+    cluster.local_box = {{-1, -1, -1}, {1, 1, 1}};
+    flat.fuzzy_boxes[0] = {{0, -1, -1}, {0, 1, 1}};
+    const auto count = static_cast<std::uint32_t>(below.size());
+    flat.kd_nodes = {KdNode::inner(0, 0.0f, 1), KdNode::leaf(0, count),
+                     KdNode::leaf(count, static_cast<std::uint32_t>(above.size()))};
+    flat.kd_refs = below;
+    flat.kd_refs.insert(flat.kd_refs.end(), above.begin(), above.end());
+    SilentProgress silent;
+    return failed(check_trees(flat.view(), silent)).empty();
+  };
+  EXPECT_TRUE(passes_with({0}, {}));
+  EXPECT_TRUE(passes_with({}, {0}));
+  EXPECT_TRUE(passes_with({0}, {0}));
+  EXPECT_FALSE(passes_with({}, {}));
+}
+
 TEST_F(ModelChecks, EveryTechniqueAgreesOnASoundModel) {
   const Model view = model_.view();
   SilentProgress silent;
