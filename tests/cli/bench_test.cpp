@@ -80,9 +80,9 @@ TEST_F(Bench, CountsAreTheSameEveryTime) {
 
 TEST_F(Bench, AMismatchIsReportedAndIsAnInternalFault) {
   ModelStorage model = sample_model();
-  const Cluster& cluster = model.clusters[0];
-  for (std::uint32_t i = 0; i < cluster.ref_count; ++i)  // the tree no longer knows triangle 1
-    if (model.kd_refs[cluster.first_ref + i] == 1) model.kd_refs[cluster.first_ref + i] = 0;
+  for (const Cluster& cluster : model.clusters)  // the trees know one triangle each
+    for (std::uint32_t i = 0; i < cluster.ref_count; ++i)
+      model.kd_refs[cluster.first_ref + i] = cluster.first_triangle;
   write_mdk(model.view(), folder_.file("wrong.mdk"));
   const Outcome run = run_mdprep({"bench", folder_.file("wrong.mdk"), "--size", "128x128",
                                   "--rounds", "1", "-q", "--json", folder_.file("b.json")});
