@@ -112,7 +112,7 @@ AffineFit fit_affine(const FitMoments& moments, const FitOptions& options) {
   };
 
   // First nearly unregularised; what is left over tells how far the points can be trusted.
-  const double least = 1e-12 * source.trace() + moments.weight * options.noise * options.noise;
+  const double least = 1e-10 * source.trace() + moments.weight * options.noise * options.noise;
   Matrix map = solve(least);
   const double left = residual_of(map, cross, source, moments.target_trace);
   if (left > 0 && options.ridge > 0) map = solve(least + options.ridge * left);

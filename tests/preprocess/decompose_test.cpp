@@ -1,0 +1,337 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "common/base/error.h"
+#include "common/base/parallel.h"
+#include "preprocess/pipeline.h"
+#include "tests/preprocess/moving_meshes.h"
+
+namespace mdk {
+namespace {
+
+DecomposeResult run(const PoseSequence& sequence, const DecomposeOptions& options = {}) {
+  SilentProgress progress;
+  return decompose(sequence, options, progress);
+}
+
+bool finite(const Vec3f& v) {
+  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
+/// Everything a model promises, whatever it was made from.
+void expect_sound(const ModelStorage& m, const PoseSequence& source) {
+  const std::size_t triangles = source.triangles.size(), clusters = m.clusters.size();
+  ASSERT_GE(clusters, 1u);
+  ASSERT_EQ(m.triangles.size(), triangles);
+  ASSERT_EQ(m.fuzzy_boxes.size(), triangles);
+  ASSERT_EQ(m.source_triangles.size(), triangles);
+  ASSERT_EQ(m.local_from_world.size(), clusters * source.key_count());
+  ASSERT_EQ(m.cluster_world_boxes.size(), clusters * source.key_count());
+  std::vector<bool> seen(triangles, false);
+  for (std::size_t t = 0; t < triangles; ++t) {
+    ASSERT_LT(m.source_triangles[t], triangles);
+    ASSERT_FALSE(seen[m.source_triangles[t]]);
+    seen[m.source_triangles[t]] = true;
+    EXPECT_EQ(m.triangles[t], source.triangles[m.source_triangles[t]]);
+    EXPECT_FALSE(m.fuzzy_boxes[t].empty());
+    EXPECT_TRUE(finite(m.fuzzy_boxes[t].lo) && finite(m.fuzzy_boxes[t].hi));
+  }
+  std::uint32_t next = 0;
+  for (std::size_t c = 0; c < clusters; ++c) {
+    const Cluster& cluster = m.clusters[c];
+    EXPECT_EQ(cluster.first_triangle, next);
+    EXPECT_GT(cluster.triangle_count, 0u);
+    next += cluster.triangle_count;
+    for (std::uint32_t t = cluster.first_triangle + 1; t < next; ++t)
+      EXPECT_LT(m.source_triangles[t - 1], m.source_triangles[t]);
+    const KdTreeView tree = m.view().fuzzy_tree(cluster);
+    EXPECT_TRUE(is_well_formed(tree, cluster.first_triangle, next));
+  }
+  EXPECT_EQ(next, triangles);
+  for (const Affine3f& map : m.local_from_world) {
+    for (const auto& row : map.m)
+      for (const float entry : row) ASSERT_TRUE(std::isfinite(entry));
+    EXPECT_NE(to_double(map).determinant(), 0);
+  }
+  for (const Vec3f& v : m.key_positions) EXPECT_TRUE(m.bounds.contains(v));
+}
+
+void expect_sound_stats(const DecomposeStats& s) {
+  for (const double v : {s.residual_rms, s.residual_max, s.sah_cost}) {
+    EXPECT_TRUE(std::isfinite(v));
+    EXPECT_GE(v, 0);
+  }
+}
+
+struct DegenerateCase {
+  const char* name;
+  std::function<PoseSequence()> make;
+};
+
+Mesh one_triangle() { return {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{{0, 1, 2}}}}; }
+
+PoseSequence moved_by(const Mesh& mesh, std::uint32_t keys,
+                      std::function<Vec3d(const Vec3d&, std::uint32_t)> move) {
+  return make_sequence(mesh, keys,
+                       [&](std::uint32_t k, std::uint32_t i) { return move(mesh.vertices[i], k); });
+}
+
+Mesh loose_triangles(std::uint32_t count) {
+  std::mt19937 random(80);
+  Mesh mesh;
+  for (std::uint32_t t = 0; t < count; ++t) {
+    const Vec3d at = random_point(random, 10);
+    for (int i = 0; i < 3; ++i) mesh.vertices.push_back(at + random_point(random, 0.1));
+    mesh.triangles.push_back({{3 * t, 3 * t + 1, 3 * t + 2}});
+  }
+  return mesh;
+}
+
+const DegenerateCase kDegenerateCases[] = {
+    {"OneTriangle",
+     [] {
+       return moved_by(one_triangle(), 5, [](const Vec3d& v, std::uint32_t k) {
+         return rigid_motion({0, 0, 1}, k, {1.0 * k, 0, 0}).point(v);
+       });
+     }},
+    {"ZeroAreaTriangles",
+     [] {
+       Mesh mesh = curved_sheet(3);
+       for (Triangle& t : mesh.triangles) t.v[2] = t.v[0];
+       return moved_by(mesh, 4, [](const Vec3d& v, std::uint32_t k) { return v * (1.0 + k); });
+     }},
+    {"AllVerticesOnePoint",
+     [] {
+       return moved_by(curved_sheet(3), 4, [](const Vec3d&, std::uint32_t k) {
+         return Vec3d{1.0 * k, 2, 3};
+       });
+     }},
+    {"FlatSheet",
+     [] {
+       return moved_by(curved_sheet(4), 6, [](const Vec3d& v, std::uint32_t k) {
+         return rigid_motion({1, 0, 0}, 0.5 * k, {}).point({v.x, v.y, 0});
+       });
+     }},
+    {"LineOfTriangles",
+     [] {
+       return moved_by(curved_sheet(4), 6, [](const Vec3d& v, std::uint32_t k) {
+         return rigid_motion({1, 1, 0}, 0.5 * k, {}).point({v.x + v.y, 0, 0});
+       });
+     }},
+    {"OneKey",
+     [] { return moved_by(curved_sheet(4), 1, [](const Vec3d& v, std::uint32_t) { return v; }); }},
+    {"TwoKeys", [] { return wild_motion(81, 2); }},
+    {"DuplicatedKeys",
+     [] {
+       return moved_by(curved_sheet(4), 9, [](const Vec3d& v, std::uint32_t k) {
+         return rigid_motion({1, 2, 3}, k / 3, {}).point(v);
+       });
+     }},
+    {"StaticMesh",
+     [] { return moved_by(curved_sheet(4), 7, [](const Vec3d& v, std::uint32_t) { return v; }); }},
+    {"CollapsedPose",
+     [] {
+       return moved_by(curved_sheet(4), 8, [](const Vec3d& v, std::uint32_t k) {
+         return v * (k == 3 ? 0.0 : k == 5 ? 1e-9 : 1.0) + Vec3d{0.1 * k, 0, 0};
+       });
+     }},
+    {"CollapsedFirstPose",
+     [] {
+       return moved_by(curved_sheet(4), 8,
+                       [](const Vec3d& v, std::uint32_t k) { return v * (k == 0 ? 0.0 : 1.0); });
+     }},
+    {"MirroredPose",
+     [] {
+       return moved_by(curved_sheet(4), 6, [](const Vec3d& v, std::uint32_t k) {
+         return Vec3d{k % 2 == 0 ? v.x : -v.x, v.y, v.z};
+       });
+     }},
+    {"FlyingApart",
+     [] {
+       const Mesh mesh = loose_triangles(60);
+       return make_sequence(mesh, 10, [&](std::uint32_t k, std::uint32_t i) {
+         const double p = i / 3;
+         return mesh.vertices[i] + Vec3d{std::sin(p), std::cos(3 * p), p * 0.1} * (100.0 * k * k);
+       });
+     }},
+    {"Huge",
+     [] {
+       PoseSequence s = wild_motion(82, 8);
+       for (Vec3f& v : s.positions) v = v * 1e6f;
+       return s;
+     }},
+    {"Tiny",
+     [] {
+       PoseSequence s = wild_motion(83, 8);
+       for (Vec3f& v : s.positions) v = v * 1e-6f;
+       return s;
+     }},
+    {"ThousandsOfLooseParts",
+     [] {
+       const Mesh mesh = loose_triangles(3000);
+       return make_sequence(mesh, 6, [&](std::uint32_t k, std::uint32_t i) {
+         const double p = i / 3;
+         return rigid_motion({std::sin(p), 1, 0}, 0.2 * k * std::cos(p), {0, 0.1 * k, 0})
+             .point(mesh.vertices[i]);
+       });
+     }},
+};
+
+class DegenerateInput : public testing::TestWithParam<DegenerateCase> {};
+
+TEST_P(DegenerateInput, GivesASoundModelInEveryMode) {
+  const PoseSequence sequence = GetParam().make();
+  DecomposeOptions automatic, none, fixed, percent;
+  none.mode = DecomposeMode::kNone;
+  fixed.clusters =
+      std::min<std::uint32_t>(4, static_cast<std::uint32_t>(sequence.triangles.size()));
+  fixed.rest_key = sequence.key_count() - 1;
+  percent.stop_percent = 5;
+  for (const DecomposeOptions& options : {automatic, none, fixed, percent}) {
+    const DecomposeResult result = run(sequence, options);
+    expect_sound(result.model, sequence);
+    expect_sound_stats(result.stats);
+    if (options.clusters != 0) {
+      EXPECT_EQ(result.model.clusters.size(), options.clusters);
+      EXPECT_EQ(result.model.rest_key, *options.rest_key);
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Decompose, DegenerateInput, testing::ValuesIn(kDegenerateCases),
+                         [](const auto& tested) { return tested.param.name; });
+
+TEST(Decompose, GivesTheSameBytesForOneAndForTwoThreads) {
+  const PoseSequence sequence = wild_motion(84, 30);
+  std::vector<unsigned char> bytes[2];
+  for (const int threads : {1, 2}) {
+    const ThreadLimit limit(threads);
+    bytes[threads - 1] = model_bytes(run(sequence).model);
+  }
+  EXPECT_EQ(bytes[0], bytes[1]);
+}
+
+TEST(Decompose, NoneIsOneClusterInTheWorldItself) {
+  const PoseSequence sequence = independent_parts(3, 8);
+  DecomposeOptions options;
+  options.mode = DecomposeMode::kNone;
+  const DecomposeResult result = run(sequence, options);
+  ASSERT_EQ(result.model.clusters.size(), 1u);
+  for (const Affine3f& map : result.model.local_from_world) EXPECT_EQ(map, Affine3f{});
+  EXPECT_EQ(result.stats.stop_reason, "none");
+  EXPECT_GT(result.stats.residual_rms, 0.01);
+}
+
+TEST(Decompose, MotionMakesTheCostOfMovingPartsAFractionOfNone) {
+  const PoseSequence sequence = independent_parts(3, 20);
+  DecomposeOptions none;
+  none.mode = DecomposeMode::kNone;
+  const DecomposeResult with = run(sequence), without = run(sequence, none);
+  EXPECT_EQ(with.model.clusters.size(), 3u);
+  EXPECT_LT(with.stats.sah_cost, 0.5 * without.stats.sah_cost);
+  EXPECT_LT(with.stats.residual_rms, 1e-6);
+}
+
+TEST(Decompose, ExtremesThatOnlyFewKeysShowAreStillBoundedAndCounted) {
+  // More keys than clustering looks at, one of them wild.
+  const Mesh mesh = curved_sheet(5);
+  const PoseSequence sequence = make_sequence(mesh, 300, [&](std::uint32_t k, std::uint32_t i) {
+    Vec3d v = mesh.vertices[i];
+    if (k == 217) v.z += 3 * v.x * v.y;
+    return rigid_motion({0, 1, 0}, 0.05 * k, {}).point(v);
+  });
+  const DecomposeResult result = run(sequence);
+  expect_sound(result.model, sequence);
+  EXPECT_GT(result.stats.residual_max, 10 * result.stats.residual_rms);
+}
+
+TEST(Decompose, AppearanceFollowsItsTriangles) {
+  PoseSequence sequence = independent_parts(3, 6);
+  std::mt19937 random(85);
+  std::shuffle(sequence.triangles.begin(), sequence.triangles.end(), random);
+  sequence.appearance.materials.resize(sequence.triangles.size());
+  for (std::uint32_t t = 0; t < sequence.triangles.size(); ++t) {
+    sequence.appearance.triangle_materials[t] = t;
+    for (std::uint32_t c = 0; c < 3; ++c) {
+      sequence.appearance.corner_texcoords.push_back(
+          {static_cast<float>(t), static_cast<float>(c)});
+      sequence.appearance.corner_colors.push_back(3 * t + c);
+    }
+  }
+  const ModelStorage model = run(sequence).model;
+  for (std::uint32_t t = 0; t < model.triangles.size(); ++t) {
+    const std::uint32_t source = model.source_triangles[t];
+    EXPECT_EQ(model.appearance.triangle_materials[t], source);
+    for (std::uint32_t c = 0; c < 3; ++c) {
+      EXPECT_EQ(model.appearance.corner_texcoords[3 * t + c].u, static_cast<float>(source));
+      EXPECT_EQ(model.appearance.corner_colors[3 * t + c], 3 * source + c);
+    }
+  }
+}
+
+TEST(Decompose, StepsAreCountedFromOneAndTheResidualFalls) {
+  const DecomposeResult result = run(wild_motion(86, 12));
+  ASSERT_FALSE(result.stats.steps.empty());
+  for (std::size_t i = 0; i < result.stats.steps.size(); ++i)
+    EXPECT_EQ(result.stats.steps[i].clusters, i + 1);
+  EXPECT_LT(result.stats.steps.back().residual_rms, 0.5 * result.stats.steps.front().residual_rms);
+}
+
+TEST(Decompose, ReportsProgressThatOnlyRisesWithinAStage) {
+  struct Recorder final : ProgressSink {
+    std::string stage;
+    double last = 0;
+    std::vector<std::string> stages;
+    void report(std::string_view name, double fraction) override {
+      EXPECT_GE(fraction, 0);
+      EXPECT_LE(fraction, 1);
+      if (stages.empty() || stages.back() != name) {
+        stages.emplace_back(name);
+        last = 0;
+      }
+      EXPECT_GE(fraction, last);
+      last = fraction;
+    }
+  } recorder;
+  decompose(wild_motion(87, 10), {}, recorder);
+  EXPECT_EQ(recorder.stages, (std::vector<std::string>{"decompose", "build"}));
+  EXPECT_EQ(recorder.last, 1);
+}
+
+TEST(Decompose, RefusesWhatDoesNotExist) {
+  const PoseSequence sequence = wild_motion(88, 5);
+  const auto code_of = [](const PoseSequence& s, const DecomposeOptions& options) {
+    try {
+      run(s, options);
+    } catch (const Error& e) {
+      return e.code();
+    }
+    return ErrorCode::kInternal;
+  };
+  DecomposeOptions options;
+  options.rest_key = 5;
+  EXPECT_EQ(code_of(sequence, options), ErrorCode::kUsage);
+  options = {};
+  options.clusters = static_cast<std::uint32_t>(sequence.triangles.size()) + 1;
+  EXPECT_EQ(code_of(sequence, options), ErrorCode::kUsage);
+  options = {};
+  options.stop_percent = -1;
+  EXPECT_EQ(code_of(sequence, options), ErrorCode::kUsage);
+  PoseSequence bare = sequence;
+  bare.triangles.clear();
+  bare.appearance.triangle_materials.clear();
+  EXPECT_EQ(code_of(bare, {}), ErrorCode::kBadInput);
+  for (const float bad :
+       {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(), 1e30f}) {
+    PoseSequence broken = sequence;
+    broken.positions[17].y = bad;
+    EXPECT_EQ(code_of(broken, {}), ErrorCode::kBadInput);
+  }
+}
+
+}  // namespace
+}  // namespace mdk

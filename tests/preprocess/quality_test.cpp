@@ -1,0 +1,88 @@
+// How well real motion is decomposed, against the numbers a plain implementation reached
+// (docs/method.md). Needs the external sample sequences.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <vector>
+
+#include "preprocess/cost.h"
+#include "preprocess/fuzzy_boxes.h"
+#include "preprocess/pipeline.h"
+#include "tests/preprocess/sample_sequences.h"
+
+namespace mdk {
+namespace {
+
+/// World area of boxes (in triangle order) over the model's box area, median over keys.
+double median_area_ratio(const ModelStorage& model, std::span<const Aabb> boxes) {
+  const std::size_t clusters = model.clusters.size(), keys = model.key_times.size();
+  std::vector<FaceSums> sums(clusters);
+  for (std::size_t c = 0; c < clusters; ++c)
+    for (const Aabb& box :
+         boxes.subspan(model.clusters[c].first_triangle, model.clusters[c].triangle_count))
+      sums[c].add(box);
+  std::vector<double> ratios(keys, 0);
+  for (std::size_t k = 0; k < keys; ++k) {
+    Aabbd box;
+    for (std::size_t v = 0; v < model.vertex_count; ++v)
+      box.extend(to_double(model.key_positions[k * model.vertex_count + v]));
+    for (std::size_t c = 0; c < clusters; ++c)
+      ratios[k] +=
+          sums[c].area(world_area_weights(to_double(model.local_from_world[k * clusters + c])));
+    ratios[k] /= box.surface_area();
+  }
+  std::nth_element(ratios.begin(), ratios.begin() + static_cast<std::ptrdiff_t>(keys / 2),
+                   ratios.end());
+  return ratios[keys / 2];
+}
+
+std::vector<Aabb> boxes_over_keys_only(const ModelStorage& model) {
+  PoseSequence sequence;
+  sequence.vertex_count = model.vertex_count;
+  sequence.triangles = model.triangles;
+  sequence.clips = model.clips;
+  sequence.key_times = model.key_times;
+  sequence.positions = model.key_positions;
+  std::vector<std::uint32_t> cluster_of_triangle;
+  for (std::uint32_t c = 0; c < model.clusters.size(); ++c)
+    cluster_of_triangle.resize(cluster_of_triangle.size() + model.clusters[c].triangle_count, c);
+  return fuzzy_boxes(
+      sequence,
+      make_cluster_members(model.triangles, cluster_of_triangle,
+                           static_cast<std::uint32_t>(model.clusters.size()), model.vertex_count),
+      model.local_from_world, BetweenKeys::kIgnore);
+}
+
+struct Target {
+  const char* name;
+  double residual_rms, area_at_keys;  ///< with 20 clusters, boxes over keys alone
+};
+
+class RealMotion : public testing::TestWithParam<Target> {};
+
+TEST_P(RealMotion, IsDecomposedBetterThanByAPlainImplementation) {
+  std::optional<PoseSequence> sequence = load_sample_sequence(GetParam().name);
+  if (!sequence) GTEST_SKIP() << "the sample sequences are not installed";
+  DecomposeOptions options;
+  options.clusters = 20;
+  SilentProgress progress;
+  const DecomposeResult result = decompose(std::move(*sequence), options, progress);
+  const double at_keys = median_area_ratio(result.model, boxes_over_keys_only(result.model));
+  std::printf("%s: residual %.5f, W %.2f at keys, %.2f at all times, %.1f s\n", GetParam().name,
+              result.stats.residual_rms, at_keys,
+              median_area_ratio(result.model, result.model.fuzzy_boxes),
+              result.stats.decompose_seconds + result.stats.build_seconds);
+  EXPECT_LT(result.stats.residual_rms, GetParam().residual_rms);
+  EXPECT_LT(at_keys, GetParam().area_at_keys);
+}
+
+INSTANTIATE_TEST_SUITE_P(Decompose, RealMotion,
+                         testing::Values(Target{"cow", .0070, 28},
+                                         Target{"horse_gallop", .0042, 8.8},
+                                         Target{"crane", .0054, 20},
+                                         Target{"elephant_gallop", .0030, 15}),
+                         [](const auto& tested) { return tested.param.name; });
+
+}  // namespace
+}  // namespace mdk
