@@ -1,0 +1,171 @@
+// A clip is a script of moves: at a time, over a duration, a joint eases to new angles. Within a
+// finger the joints set off one after another, which is what makes the motion look alive.
+#include "assets/hand_clips.h"
+
+#include <array>
+#include <cmath>
+#include <numbers>
+
+namespace mdk {
+namespace {
+
+constexpr double kKeysPerSecond = 30;
+
+/// A digit's three joints, from the palm.
+using DigitPose = std::array<JointAngles, kPhalanges>;
+using HandPose = std::array<DigitPose, kDigits>;
+
+constexpr HandPose kOpen = {{
+    {{{-4, 0, 2}, {-4, 0, 0}, {-6, 0, 0}}},
+    {{{-3, 0, 0}, {-1, 0, 0}, {-2, 0, 0}}},
+    {{{-3, 0, 0}, {-1, 0, 0}, {-2, 0, 0}}},
+    {{{-3, 0, 0}, {-1, 0, 0}, {-2, 0, 0}}},
+    {{{-5, 0, 0}, {-2, 0, 0}, {-2, 0, 0}}},
+}};
+
+// Bending fingers come together: the spread of the rest pose is taken back.
+constexpr HandPose kFist = {{
+    {{{22, 30, 24}, {34, 0, 0}, {48, 0, 0}}},
+    {{{78, 0, 7}, {98, 0, 0}, {52, 0, 0}}},
+    {{{80, 0, 1}, {99, 0, 0}, {54, 0, 0}}},
+    {{{80, 0, -5}, {97, 0, 0}, {54, 0, 0}}},
+    {{{76, 0, -12}, {94, 0, 0}, {52, 0, 0}}},
+}};
+
+// The thumb laid into the palm, where no finger is in its way.
+constexpr DigitPose kThumbFolded = {{{20, 30, 22}, {40, 0, 0}, {45, 0, 0}}};
+
+double ease(double s) {
+  s = std::min(std::max(s, 0.0), 1.0);
+  return s * s * s * (s * (6 * s - 15) + 10);
+}
+
+class Script {
+ public:
+  Script(const HandSkeleton& skeleton, const HandPose& start)
+      : skeleton_(skeleton), start_(skeleton.joints.size()), moves_(skeleton.joints.size()) {
+    for (std::size_t d = 0; d < kDigits; ++d)
+      for (std::size_t i = 0; i < kPhalanges; ++i)
+        start_[static_cast<std::size_t>(skeleton.digits[d][i])] = start[d][i];
+  }
+
+  /// Moves of one joint must be given in order and must not overlap.
+  void turn(int joint, double at, double seconds, const JointAngles& to) {
+    moves_[static_cast<std::size_t>(joint)].push_back({at, seconds, to});
+  }
+
+  void move_digit(std::size_t digit, double at, double seconds, const DigitPose& to) {
+    for (std::size_t i = 0; i < kPhalanges; ++i)
+      turn(skeleton_.digits[digit][i], at + 0.05 * seconds * static_cast<double>(i), 0.9 * seconds,
+           to[i]);
+  }
+
+  HandClip play(const std::string& name, double seconds) const {
+    HandClip clip{name, {}, {}};
+    const int keys = static_cast<int>(std::lround(seconds * kKeysPerSecond)) + 1;
+    for (int k = 0; k < keys; ++k) {
+      const double t = k / kKeysPerSecond;
+      clip.times.push_back(t);
+      auto& pose = clip.poses.emplace_back();
+      for (std::size_t j = 0; j < start_.size(); ++j) pose.push_back(angles_at(j, t));
+    }
+    return clip;
+  }
+
+ private:
+  struct Move {
+    double at, seconds;
+    JointAngles to;
+  };
+
+  JointAngles angles_at(std::size_t joint, double t) const {
+    JointAngles angles = start_[joint];
+    for (const Move& move : moves_[joint])
+      angles += (move.to - angles) * ease((t - move.at) / move.seconds);
+    return angles;
+  }
+
+  const HandSkeleton& skeleton_;
+  std::vector<JointAngles> start_;
+  std::vector<std::vector<Move>> moves_;
+};
+
+HandClip grasp(const HandSkeleton& skeleton) {
+  Script script(skeleton, kOpen);
+  constexpr std::size_t kThumb = 0;
+  for (std::size_t d = 1; d < kDigits; ++d) {
+    const double wave = 0.07 * static_cast<double>(kDigits - 1 - d);
+    script.move_digit(d, 0.08 + wave, 0.55, kFist[d]);
+    script.move_digit(d, 1.22 + 0.07 * static_cast<double>(d - 1), 0.50, kOpen[d]);
+  }
+  script.move_digit(kThumb, 0.34, 0.55, kFist[kThumb]);
+  script.move_digit(kThumb, 1.10, 0.50, kOpen[kThumb]);
+  script.turn(skeleton.little_metacarpal, 0.1, 0.6, {9, 0, 0});
+  script.turn(skeleton.little_metacarpal, 1.2, 0.6, {});
+  script.turn(skeleton.ring_metacarpal, 0.1, 0.6, {5, 0, 0});
+  script.turn(skeleton.ring_metacarpal, 1.2, 0.6, {});
+  script.turn(skeleton.hand, 0.05, 0.85, {-14, 0, 4});
+  script.turn(skeleton.hand, 1.1, 0.85, {});
+  script.turn(skeleton.forearm_twist, 0.05, 0.9, {0, 24, 0});
+  script.turn(skeleton.forearm_twist, 1.05, 0.9, {});
+  return script.play("grasp", 2);
+}
+
+HandClip count(const HandSkeleton& skeleton) {
+  Script script(skeleton, kFist);
+  constexpr std::size_t kThumb = 0, kLittle = 4;
+  constexpr double kBeat = 0.62, kFirst = 0.2, kClose = 3.35;
+  for (std::size_t d = 1; d < kDigits; ++d) {
+    const double at = kFirst + kBeat * static_cast<double>(d - 1);
+    script.move_digit(d, at, 0.36, kOpen[d]);
+    script.turn(skeleton.hand, at, 0.2, {5, 0, d % 2 ? -2.5 : 2.5});
+    script.turn(skeleton.hand, at + 0.2, 0.25, {-3, 0, d % 2 ? -2.5 : 2.5});
+    script.move_digit(d, kClose + 0.04 * static_cast<double>(kLittle - d), 0.45, kFist[d]);
+  }
+  const double four = kFirst + 3 * kBeat, five = four + kBeat;
+  script.move_digit(kThumb, four - 0.3, 0.5, kThumbFolded);
+  script.move_digit(kThumb, five, 0.4, kOpen[kThumb]);
+  script.move_digit(kThumb, kClose + 0.12, 0.5, kFist[kThumb]);
+  script.turn(skeleton.hand, five, 0.2, {5, 0, 0});
+  script.turn(skeleton.hand, five + 0.2, 0.25, {-3, 0, 0});
+  script.turn(skeleton.hand, kClose, 0.5, {});
+  script.turn(skeleton.forearm_twist, 0.2, 1.5, {0, -8, 0});
+  script.turn(skeleton.forearm_twist, 1.8, 1.2, {0, 8, 0});
+  script.turn(skeleton.forearm_twist, 3.2, 0.75, {});
+  return script.play("count", 4);
+}
+
+Quaternion about(std::size_t axis, double degrees) {
+  const double half = degrees * std::numbers::pi / 360;
+  const double s = std::sin(half);
+  return {axis == 0 ? s : 0, axis == 1 ? s : 0, axis == 2 ? s : 0, std::cos(half)};
+}
+
+}  // namespace
+
+std::vector<HandClip> make_hand_clips(const HandSkeleton& skeleton) {
+  return {grasp(skeleton), count(skeleton)};
+}
+
+Quaternion joint_rotation(const JointAngles& degrees) {
+  return about(2, degrees.z) * about(0, degrees.x) * about(1, degrees.y);
+}
+
+Quaternion operator*(const Quaternion& a, const Quaternion& b) {
+  return {a.w * b.x + a.x * b.w + a.y * b.z - a.z * b.y,
+          a.w * b.y - a.x * b.z + a.y * b.w + a.z * b.x,
+          a.w * b.z + a.x * b.y - a.y * b.x + a.z * b.w,
+          a.w * b.w - a.x * b.x - a.y * b.y - a.z * b.z};
+}
+
+Quaternion rotation_between(const Basis& parent, const Basis& child) {
+  // Columns: the child's axes in the parent's. Rest bases differ by less than half a turn, so the
+  // trace stays well above -1.
+  const Vec3d x = parent.vector_to_local(child.x), y = parent.vector_to_local(child.y),
+              z = parent.vector_to_local(child.z);
+  const double w = 0.5 * std::sqrt(1 + x.x + y.y + z.z);
+  const double s = 0.25 / w;
+  return {(y.z - z.y) * s, (z.x - x.z) * s, (x.y - y.x) * s, w};
+}
+
+}  // namespace mdk
