@@ -1,0 +1,94 @@
+// App: the viewer's loop. Events change the ViewState; a picture of it is asked of the worker; the
+// window is drawn when something is new, and sleeps when nothing is.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/base/error.h"
+#include "common/base/stopwatch.h"
+#include "viewer/options.h"
+#include "viewer/render_worker.h"
+#include "viewer/request_policy.h"
+#include "viewer/resolution.h"
+#include "viewer/side_panel.h"
+#include "viewer/style.h"
+#include "viewer/texture_blit.h"
+#include "viewer/view_state.h"
+#include "viewer/window.h"
+
+namespace mdk {
+
+class App {
+ public:
+  /// Opens the window and the file. A file that cannot be opened is said in the window; throws
+  /// Error (kIo) where there can be no window.
+  explicit App(const ViewerOptions& options);
+
+  /// Until the user quits, or --quit-after. Returns the exit status: 0, or for a scripted run that
+  /// of the error that still stands. Throws Error (kIo) where the screenshot cannot be written.
+  int run();
+
+ private:
+  void open(const std::string& path);
+  void apply_options();
+  void show_error(const Error& error);
+  void show_notice(const std::string& sentence);
+
+  void handle_events();
+  void execute(const Action& action);
+  void step_technique(int by);
+  void next_shading();
+  void reset_view();
+
+  void show_finished_frame();
+  void update_shown_rate();
+  void expire_notice();
+
+  RenderJob wanted_job() const;
+  void request_picture();
+
+  Layout layout() const;
+  PixelRect picture_pixels() const;
+  double picture_aspect() const;
+  double seconds_to_wait() const;
+  bool draw_is_due() const;
+  void draw();
+  void handle_mouse(const Rect& picture);
+  void save_picture();
+  void save_window();
+  void save(const Picture& picture);
+  std::string free_file_name() const;
+
+  bool scripted() const { return options_.quit_after > 0; }
+  void finish();
+
+  ViewerOptions options_;
+  Window window_;
+  Theme theme_;
+  TextureBlit blit_;
+  ViewState state_;
+  WidgetMap widgets_;
+  ErrorCode error_code_ = ErrorCode::kInternal;  ///< of state_.error, where one stands
+
+  Stopwatch clock_;             ///< since the start
+  double last_event_time_ = 0;  ///< when time was last let pass
+  double last_draw_time_ = -1;
+  double notice_until_ = 0;
+  int redraws_ = 1;  ///< ImGui needs a few drawings to settle after an event
+  Motion motion_ = Motion::kStill;
+  bool quit_ = false, save_window_ = false;
+
+  RequestPolicy requests_;
+  double full_picture_ms_ = 0;  ///< the last frame's time, scaled to full resolution
+  Picture shown_;
+  std::deque<double> shown_times_;
+  std::uint64_t frames_shown_ = 0;
+
+  RenderWorker worker_;  ///< last: it goes first, while the window still can be woken
+};
+
+}  // namespace mdk

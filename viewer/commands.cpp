@@ -1,0 +1,71 @@
+#include "viewer/commands.h"
+
+// GLFW only for the names of keys.
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+
+#include <array>
+
+namespace mdk {
+namespace {
+
+struct Binding {
+  int key;
+  unsigned character;
+  Command command;
+};
+
+constexpr std::array kBindings = {
+    Binding{GLFW_KEY_SPACE, 0, Command::kPlayPause},
+    Binding{GLFW_KEY_LEFT, 0, Command::kPreviousKey},
+    Binding{GLFW_KEY_RIGHT, 0, Command::kNextKey},
+    Binding{GLFW_KEY_HOME, 0, Command::kStart},
+    Binding{GLFW_KEY_END, 0, Command::kEnd},
+    Binding{GLFW_KEY_UP, '[', Command::kPreviousTechnique},
+    Binding{GLFW_KEY_DOWN, ']', Command::kNextTechnique},
+    Binding{0, 's', Command::kNextShading},
+    Binding{0, 'f', Command::kFit},
+    Binding{0, 'r', Command::kResetView},
+    Binding{0, 'p', Command::kSavePicture},
+    Binding{0, 'P', Command::kSaveWindow},
+    Binding{GLFW_KEY_TAB, 0, Command::kTogglePanel},
+    Binding{GLFW_KEY_F1, '?', Command::kToggleHelp},
+    Binding{GLFW_KEY_ESCAPE, 0, Command::kDismiss},
+    Binding{0, 'q', Command::kQuit},
+};
+
+constexpr std::array kHelp = {
+    ShortcutHelp{"Space", "play or pause"},
+    ShortcutHelp{"Left / Right", "to the key before or behind"},
+    ShortcutHelp{"Home / End", "to the start or end of the clip"},
+    ShortcutHelp{"Up / Down or [ ]", "technique before or behind"},
+    ShortcutHelp{"1 to 9", "technique by number"},
+    ShortcutHelp{"S", "next shading"},
+    ShortcutHelp{"F", "fit the model, keeping the direction"},
+    ShortcutHelp{"R", "back to the first view"},
+    ShortcutHelp{"P", "save the picture as PNG"},
+    ShortcutHelp{"Shift + P", "save the whole window as PNG"},
+    ShortcutHelp{"Tab", "show or hide the panel"},
+    ShortcutHelp{"? or F1", "this list"},
+    ShortcutHelp{"Esc", "close this list or a message; quit"},
+    ShortcutHelp{"Q", "quit"},
+    ShortcutHelp{"Left drag", "orbit"},
+    ShortcutHelp{"Middle, right or Shift drag", "pan"},
+    ShortcutHelp{"Wheel", "zoom to the pointer"},
+};
+
+}  // namespace
+
+std::optional<Action> action_for(const KeyEvent& event) {
+  for (const Binding& binding : kBindings)
+    if ((event.key != 0 && event.key == binding.key) ||
+        (event.character != 0 && event.character == binding.character))
+      return Action{binding.command};
+  if (event.key >= GLFW_KEY_1 && event.key <= GLFW_KEY_9)
+    return Action{Command::kTechniqueByNumber, static_cast<std::size_t>(event.key - GLFW_KEY_1)};
+  return {};
+}
+
+std::span<const ShortcutHelp> shortcut_help() { return kHelp; }
+
+}  // namespace mdk

@@ -1,0 +1,53 @@
+// Commands: everything a key or a button can ask for, and the table of keys. The help overlay shows
+// this table, so that it cannot lie.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+
+namespace mdk {
+
+enum class Command {
+  kPlayPause,
+  kPreviousKey,
+  kNextKey,
+  kStart,
+  kEnd,
+  kPreviousTechnique,
+  kNextTechnique,
+  kTechniqueByNumber,
+  kNextShading,
+  kFit,
+  kResetView,
+  kSavePicture,
+  kSaveWindow,
+  kTogglePanel,
+  kToggleHelp,
+  kDismiss,  ///< closes help or the error that stands; with neither, quits
+  kQuit,
+};
+
+struct Action {
+  Command command;
+  std::size_t number = 0;  ///< of kTechniqueByNumber: row of the table
+};
+
+/// A key that was pressed or a character that was typed; the other one is 0. Letters and signs are
+/// taken as characters, so that they follow the keyboard's layout.
+struct KeyEvent {
+  int key = 0;  ///< GLFW_KEY_...
+  unsigned character = 0;
+};
+
+std::optional<Action> action_for(const KeyEvent& event);
+
+struct ShortcutHelp {
+  const char* keys;
+  const char* does;
+};
+
+/// Keys, then the mouse.
+std::span<const ShortcutHelp> shortcut_help();
+
+}  // namespace mdk

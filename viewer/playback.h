@@ -1,0 +1,91 @@
+// Playback: which clip is shown at which moment, and how time goes on. No clock of its own: the
+// caller says how much time has passed.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "common/motion/model.h"
+
+namespace mdk {
+
+enum class LoopMode {
+  kOnce,      ///< stops at the end
+  kLoop,      ///< from the end to the start
+  kPingPong,  ///< there and back
+};
+
+enum class StepDirection { kBack, kForward };
+
+inline constexpr double kMinSpeed = 0.05, kMaxSpeed = 8;
+
+/// The times of one clip's keys, in seconds from its start, rising; at least one.
+struct ClipTimes {
+  std::string name;
+  std::vector<double> key_times;
+
+  double seconds() const { return key_times.back(); }
+};
+
+std::vector<ClipTimes> clip_times(const Model& model);
+
+/// The time is always within the clip. Without clips every call is harmless and the time stays 0.
+class Playback {
+ public:
+  Playback() = default;
+  /// Stands at the start of the first clip, paused.
+  explicit Playback(std::vector<ClipTimes> clips) : clips_(std::move(clips)) {}
+
+  const std::vector<ClipTimes>& clips() const { return clips_; }
+  std::size_t clip() const { return clip_; }
+  double time() const { return time_; }
+  double seconds() const { return clips_.empty() ? 0 : clips_[clip_].seconds(); }
+  bool playing() const { return playing_; }
+  LoopMode loop() const { return loop_; }
+  double speed() const { return speed_; }
+  /// The last key at or before the present time, counted within the clip.
+  std::size_t key() const;
+
+  /// Goes to the start of another clip and plays on if it was playing. A number that is no clip is
+  /// ignored.
+  void set_clip(std::size_t clip);
+  /// Whether there was a clip of this name to go to.
+  bool set_clip(std::string_view name);
+
+  /// To a moment, clamped to the clip; what is not a number is ignored.
+  void seek(double time);
+  /// Pauses at the next key before or behind the present time; loops wrap around.
+  void step_key(StepDirection direction);
+  void go_to_start() { seek(0); }
+  void go_to_end() { seek(seconds()); }
+
+  /// At the end of a clip that does not loop, playing starts over.
+  void play();
+  void pause() { playing_ = false; }
+  void toggle() { playing_ ? pause() : play(); }
+
+  void set_loop(LoopMode loop);
+  void set_speed(double speed);
+
+  /// While a hand holds the play head, time stands where the hand is; playing goes on afterwards.
+  void begin_scrub() { scrubbing_ = true; }
+  void end_scrub() { scrubbing_ = false; }
+  bool scrubbing() const { return scrubbing_; }
+
+  /// Lets `elapsed` seconds of wall-clock time pass. Whether the time shown has changed.
+  bool advance(double elapsed);
+
+ private:
+  void advance_ping_pong(double step);
+
+  std::vector<ClipTimes> clips_;
+  std::size_t clip_ = 0;
+  double time_ = 0, speed_ = 1;
+  LoopMode loop_ = LoopMode::kLoop;
+  StepDirection direction_ = StepDirection::kForward;  ///< of ping-pong
+  bool playing_ = false, scrubbing_ = false;
+};
+
+}  // namespace mdk

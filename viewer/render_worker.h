@@ -1,0 +1,72 @@
+// RenderWorker: a thread that owns the Renderer, so that the panel never waits for a picture. One
+// job waits at a time, the latest; one finished frame waits to be taken, the latest.
+#pragma once
+
+#include <condition_variable>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "common/trace/renderer.h"
+#include "formats/mdk_view.h"
+
+namespace mdk {
+
+/// A picture that is wanted: of which file, how, of what.
+struct RenderJob {
+  std::shared_ptr<const MdkFile> file;
+  std::size_t technique = 0;  ///< row of technique_table()
+  FrameRequest request;
+};
+
+/// Whether both ask for the same pixels by the same technique; counting does not matter.
+bool same_picture(const RenderJob& a, const RenderJob& b);
+
+struct FinishedFrame {
+  RenderJob job;
+  std::string error;  ///< a sentence where there is no picture, else empty
+  FrameStats stats;
+  std::size_t structure_bytes = 0;
+  std::vector<std::uint32_t> pixels;  ///< sRGB RGBA, row 0 on top
+};
+
+class RenderWorker {
+ public:
+  /// `on_finished` is called from the worker's thread whenever a frame can be taken.
+  explicit RenderWorker(std::function<void()> on_finished);
+  /// Waits for the frame in work.
+  ~RenderWorker();
+  RenderWorker(const RenderWorker&) = delete;
+  RenderWorker& operator=(const RenderWorker&) = delete;
+
+  /// Starts the job when the present one is done; takes the place of one that has not started.
+  void request(RenderJob job);
+
+  /// The latest frame that was finished and not yet taken. Never waits for one.
+  std::optional<FinishedFrame> take_finished();
+
+  /// Whether a job waits or is in work.
+  bool busy() const;
+
+ private:
+  void run();
+  FinishedFrame render(RenderJob job);
+
+  std::function<void()> on_finished_;
+  std::shared_ptr<const MdkFile> open_file_;  // the worker's own: what renderer_ looks at
+  std::unique_ptr<Renderer> renderer_;
+
+  mutable std::mutex mutex_;
+  std::condition_variable wake_;
+  std::optional<RenderJob> waiting_;
+  std::optional<FinishedFrame> finished_;
+  bool working_ = false, stopping_ = false;
+  std::thread thread_;  // last: it uses everything above
+};
+
+}  // namespace mdk

@@ -1,0 +1,106 @@
+#include "viewer/state_report.h"
+
+#include <nlohmann/json.hpp>
+
+#include "common/trace/technique.h"
+
+namespace mdk {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json camera_json(const Camera& c) {
+  return {c.eye.x,    c.eye.y, c.eye.z, c.target.x, c.target.y,
+          c.target.z, c.up.x,  c.up.y,  c.up.z,     c.vertical_fov_deg};
+}
+
+Json frame_json(const ViewState& state) {
+  if (!state.last_frame) return nullptr;
+  const FrameReport& frame = *state.last_frame;
+  Json json = {{"technique", technique_table()[frame.technique].id},
+               {"width", frame.width},
+               {"height", frame.height},
+               {"pose_ms", frame.stats.pose_ms},
+               {"update_ms", frame.stats.update_ms},
+               {"trace_ms", frame.stats.trace_ms},
+               {"shade_ms", frame.stats.shade_ms},
+               {"time_to_image_ms", frame.stats.time_to_image_ms()},
+               {"prebuild_ms", frame.stats.prebuild_ms},
+               {"rays", frame.stats.rays},
+               {"hits", frame.stats.hits},
+               {"structure_bytes", frame.structure_bytes}};
+  const auto& work = state.last_work;
+  const bool counted = work && work->rays > 0 && work->technique == frame.technique;
+  const auto per_ray = [&](std::uint64_t TraceCounters::*count) -> Json {
+    if (!counted) return nullptr;
+    return static_cast<double>(work->counters.*count) / static_cast<double>(work->rays);
+  };
+  json["node_visits_per_ray"] = per_ray(&TraceCounters::node_visits);
+  json["triangle_tests_per_ray"] = per_ray(&TraceCounters::triangle_tests);
+  json["clusters_per_ray"] = per_ray(&TraceCounters::clusters_entered);
+  return json;
+}
+
+std::string_view shading_id(ShadingMode mode) {
+  for (const ShadingInfo& info : shading_table())
+    if (info.mode == mode) return info.id;
+  return "";
+}
+
+const char* loop_id(LoopMode mode) {
+  switch (mode) {
+    case LoopMode::kOnce:
+      return "once";
+    case LoopMode::kLoop:
+      return "loop";
+    case LoopMode::kPingPong:
+      return "ping-pong";
+  }
+  return "";
+}
+
+const char* resolution_id(Resolution resolution) {
+  switch (resolution) {
+    case Resolution::kFull:
+      return "1";
+    case Resolution::kHalf:
+      return "1/2";
+    case Resolution::kQuarter:
+      return "1/4";
+    case Resolution::kAuto:
+      return "auto";
+  }
+  return "";
+}
+
+}  // namespace
+
+std::string state_json(const ViewState& state, const WindowReport& window) {
+  const Playback& playback = state.playback;
+  Json json = {{"schema", "mdview-state/1"}};
+  json["file"] = state.file ? Json(state.file->path()) : Json();
+  json["technique"] = technique_table()[state.settings.technique].id;
+  json["shading"] = shading_id(state.settings.shading);
+  json["clip"] = playback.clips().empty() ? Json() : Json(playback.clips()[playback.clip()].name);
+  json["time"] = playback.time();
+  json["key"] = playback.key();
+  json["playing"] = playback.playing();
+  json["loop"] = loop_id(playback.loop());
+  json["speed"] = playback.speed();
+  json["resolution"] = resolution_id(state.settings.resolution);
+  json["counting"] = state.settings.count_work;
+  json["camera"] = camera_json(state.camera.camera());
+  json["frames_shown"] = window.frames_shown;
+  json["last_frame"] = frame_json(state);
+  json["help"] = state.help_open;
+  json["panel"] = state.panel == PanelMode::kShown;
+  json["error"] = state.error.empty() ? Json() : Json(state.error);
+  json["notice"] = state.notice.empty() ? Json() : Json(state.notice);
+  json["window"] = {window.width, window.height};
+  Json& widgets = json["widgets"] = Json::object();
+  for (const auto& [name, r] : window.widgets) widgets[name] = {r.x, r.y, r.width, r.height};
+  // Names in a file may be any bytes; what is not UTF-8 must not end the program here.
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+}  // namespace mdk

@@ -1,0 +1,23 @@
+// StateReport: what the viewer shows, as the JSON object of --print-state.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "viewer/view_state.h"
+#include "viewer/widget_map.h"
+
+namespace mdk {
+
+/// Facts of the window that are not in the ViewState.
+struct WindowReport {
+  std::uint64_t frames_shown = 0;
+  float width = 0, height = 0;
+  WidgetMap widgets;
+};
+
+/// One line. Names are stable; times in seconds, stats as in `mdprep bench --json`; what is not
+/// known is null.
+std::string state_json(const ViewState& state, const WindowReport& window);
+
+}  // namespace mdk

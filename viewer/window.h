@@ -1,0 +1,75 @@
+// Window: one GLFW window with an OpenGL 3.3 core context and Dear ImGui in it, from start to end.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "viewer/commands.h"
+#include "viewer/options.h"
+
+struct GLFWwindow;
+
+namespace mdk {
+
+/// Whether a size counts pixels of an ordinary display and grows on a dense one.
+enum class SizeUnit { kExact, kScaled };
+
+/// sRGB RGBA, width * height, row 0 on top.
+struct Picture {
+  std::uint32_t width = 0, height = 0;
+  std::vector<std::uint32_t> pixels;
+};
+
+/// One per process. All of it for the main thread, except wake().
+class Window {
+ public:
+  /// Throws Error (kIo) where there is no display or no OpenGL 3.3; the sentence says what to do.
+  Window(const WindowSize& size, SizeUnit unit);
+  ~Window();
+  Window(const Window&) = delete;
+  Window& operator=(const Window&) = delete;
+
+  bool should_close() const;
+  void set_title(const std::string& title);
+
+  /// Sleeps until something happens, wake() is called, or `seconds` have passed.
+  void wait_events(double seconds);
+  /// Ends a wait_events() of the main thread. For any thread.
+  static void wake();
+
+  /// Whether the user or the system did anything to the window since the last call.
+  bool take_activity();
+  /// Keys and characters since the last call, none lost. Empty while a text field has the keyboard.
+  std::vector<KeyEvent> take_keys();
+  /// Paths of files dropped on the window since the last call.
+  std::vector<std::string> take_drops();
+
+  /// Size in window coordinates, those of the mouse and of ImGui.
+  float width() const;
+  float height() const;
+  /// Framebuffer pixels per window coordinate.
+  float pixel_ratio() const;
+  /// How much larger than on an ordinary display things should be, in window coordinates.
+  float ui_scale() const;
+  int framebuffer_width() const;
+  int framebuffer_height() const;
+
+  /// Clears the window and begins an ImGui frame.
+  void begin_frame();
+  /// Draws what ImGui has collected over what was drawn since begin_frame().
+  void end_frame();
+  /// What was drawn, before it is presented.
+  Picture read_pixels() const;
+  void present();
+
+ private:
+  struct Events;
+  static void install_callbacks(GLFWwindow* window);
+
+  std::unique_ptr<Events> events_;
+  GLFWwindow* window_ = nullptr;
+};
+
+}  // namespace mdk
