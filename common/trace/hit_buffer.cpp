@@ -18,11 +18,8 @@ std::uint64_t count_mismatches(const HitBuffer& a, const HitBuffer& b) {
 std::uint64_t count_hits(const HitBuffer& hits) {
   std::uint64_t count = 0;
   for (std::size_t i = 0; i < hits.tile_count(); ++i) {
-    const auto tile = static_cast<std::uint32_t>(i);
-    const std::uint32_t left = tile % hits.tiles_x() * kTileSide;
-    const std::uint32_t top = tile / hits.tiles_x() * kTileSide;
-    const std::uint32_t columns = std::min(kTileSide, hits.width() - left);
-    const std::uint32_t rows = std::min(kTileSide, hits.height() - top);
+    const std::uint32_t columns = std::min(kTileSide, hits.width() - hits.tile_left(i));
+    const std::uint32_t rows = std::min(kTileSide, hits.height() - hits.tile_top(i));
     const std::uint32_t* triangle = hits.tile(i).triangle;
     std::uint32_t in_tile = 0;
     if (columns == kTileSide) {

@@ -36,8 +36,14 @@ class HitBuffer {
   }
   std::uint32_t width() const { return width_; }
   std::uint32_t height() const { return height_; }
-  std::uint32_t tiles_x() const { return tiles_x_; }
   std::size_t tile_count() const { return tiles_.size(); }
+  /// Upper left pixel of tile `i`.
+  std::uint32_t tile_left(std::size_t i) const {
+    return static_cast<std::uint32_t>(i % tiles_x_) * kTileSide;
+  }
+  std::uint32_t tile_top(std::size_t i) const {
+    return static_cast<std::uint32_t>(i / tiles_x_) * kTileSide;
+  }
   TileHits& tile(std::size_t i) { return tiles_[i]; }
   const TileHits& tile(std::size_t i) const { return tiles_[i]; }
 

@@ -83,10 +83,8 @@ const FrameStats& Renderer::trace(const FrameRequest& request) {
   parallel_chunks(s.hits.tile_count(), 8, [&](std::size_t begin, std::size_t end) {
     Worker& worker = s.workers.local();
     for (std::size_t i = begin; i < end; ++i) {
-      const auto tile_index = static_cast<std::uint32_t>(i);
-      const TileRays tile{&rays, &pixel_from_world, &world_basis,
-                          tile_index % s.hits.tiles_x() * kTileSide,
-                          tile_index / s.hits.tiles_x() * kTileSide};
+      const TileRays tile{&rays, &pixel_from_world, &world_basis, s.hits.tile_left(i),
+                          s.hits.tile_top(i)};
       s.hits.tile(i).clear();
       s.technique->trace(tile, s.hits.tile(i), worker.scratch,
                          counting ? &worker.counters : nullptr);

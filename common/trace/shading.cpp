@@ -43,6 +43,16 @@ Vec3f unpack_linear(std::uint32_t rgba) {
   return {channel(0), channel(8), channel(16)};
 }
 
+/// One colour per row of the picture, darker downwards.
+std::vector<std::uint32_t> background_rows(std::uint32_t height) {
+  std::vector<std::uint32_t> rows(height);
+  for (std::uint32_t y = 0; y < height; ++y) {
+    const float down = (static_cast<float>(y) + 0.5f) / static_cast<float>(height);
+    rows[y] = pack_srgb(kBackgroundTop * (1 - down) + kBackgroundBottom * down);
+  }
+  return rows;
+}
+
 }  // namespace
 
 std::span<const ShadingInfo> shading_table() {
@@ -161,18 +171,25 @@ Vec3f Shader::shade_hit(const PosedMesh& mesh, const PinholeRays& rays, const Ve
 void Shader::shade(const PosedMesh& mesh, const PinholeRays& rays, const HitBuffer& hits,
                    ShadingMode mode, std::span<std::uint32_t> pixels) {
   compute_vertex_normals(mesh);
-  parallel_chunks(hits.height(), 8, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t y = begin; y < end; ++y) {
-      const float down = (static_cast<float>(y) + 0.5f) / static_cast<float>(hits.height());
-      const std::uint32_t background =
-          pack_srgb(kBackgroundTop * (1 - down) + kBackgroundBottom * down);
-      for (std::uint32_t x = 0; x < hits.width(); ++x) {
-        const std::uint32_t triangle = hits.triangle(x, static_cast<std::uint32_t>(y));
-        const Vec3f direction =
-            rays.direction(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);
-        pixels[y * hits.width() + x] =
-            triangle == kNoHit ? background
-                               : pack_srgb(shade_hit(mesh, rays, direction, triangle, mode));
+  const std::vector<std::uint32_t> background = background_rows(hits.height());
+  parallel_chunks(hits.tile_count(), 8, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const TileHits& tile = hits.tile(i);
+      const std::uint32_t left = hits.tile_left(i), top = hits.tile_top(i);
+      const std::uint32_t right = std::min(left + kTileSide, hits.width());
+      const std::uint32_t bottom = std::min(top + kTileSide, hits.height());
+      for (std::uint32_t y = top; y < bottom; ++y) {
+        const std::uint32_t* triangle = tile.triangle + (y - top) * kTileSide;
+        std::uint32_t* pixel = pixels.data() + std::size_t{y} * hits.width() + left;
+        for (std::uint32_t x = left; x < right; ++x, ++triangle, ++pixel) {
+          if (*triangle == kNoHit) {
+            *pixel = background[y];
+            continue;
+          }
+          const Vec3f direction =
+              rays.direction(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);
+          *pixel = pack_srgb(shade_hit(mesh, rays, direction, *triangle, mode));
+        }
       }
     }
   });
