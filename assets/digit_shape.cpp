@@ -10,15 +10,18 @@ namespace mdk {
 namespace {
 
 constexpr std::array<DigitProfile, kDigits> kProfiles = {{
-    {{1.20, 0.98, 0.90, 0.62}, 0.62, 1.30},
-    {{0.98, 0.86, 0.74, 0.56}, 0.47, 1.06},
-    {{1.00, 0.88, 0.76, 0.57}, 0.49, 1.12},
-    {{0.96, 0.83, 0.72, 0.54}, 0.46, 1.04},
-    {{0.84, 0.71, 0.62, 0.47}, 0.38, 0.86},
+    {{1.20, 0.98, 0.90, 0.62}, 0.58, 1.26},
+    {{0.98, 0.86, 0.74, 0.56}, 0.44, 1.04},
+    {{1.00, 0.88, 0.76, 0.57}, 0.46, 1.10},
+    {{0.96, 0.83, 0.72, 0.54}, 0.43, 1.02},
+    {{0.84, 0.71, 0.62, 0.47}, 0.36, 0.84},
 }};
 
 // Fingers are a little wider than deep.
 constexpr double kDepth = 0.93;
+
+// How far beyond the bone the nail ends, in radii of the tip.
+constexpr double kNailEnd = 0.55;
 
 }  // namespace
 
@@ -53,8 +56,7 @@ double DigitShape::distance(const Vec3d& p) const {
 double DigitShape::phalanx(std::size_t i, const Vec3d& p) const {
   const Vec3d q = bones_[i].to_local(p);
   const double len = lengths_[i], r0 = radius(i), r1 = radius(i + 1);
-  const double bone =
-      kDepth * rounded_cone({q.x, q.y, q.z / kDepth}, r0, r1, len);
+  const double bone = kDepth * rounded_cone({q.x, q.y, q.z / kDepth}, r0, r1, len);
   const double r = 0.5 * (r0 + r1);
   const Vec3d pad{q.x, q.y - 0.5 * len, q.z - 0.30 * r};
   return smooth_min(bone, ellipsoid(pad, {0.96 * r, 0.50 * len, 0.80 * r}), 0.35);
@@ -73,16 +75,13 @@ double DigitShape::tip(const Vec3d& p) const {
   double d = kDepth * rounded_cone({q.x, q.y, q.z / kDepth}, 0.98 * r0, r1, len);
   const Vec3d pad{q.x, q.y - 0.62 * len, q.z - 0.26 * r0};
   d = smooth_min(d, ellipsoid(pad, {0.86 * r0, 0.60 * len, 0.70 * r0}), 0.3);
-  // A shallow ditch around the nail, then the nail in it.
-  const double rim = outline(q);
-  const double ditch = 0.035 * std::max(0.0, 1 - std::abs(rim) / 0.12) * smooth_step(0, -0.3, q.z);
-  return smooth_min(d + ditch, nail_plate(q), 0.03);
+  return smooth_min(d, nail_plate(q), 0.05);
 }
 
 /// Outline in the tip's basis: a rounded rectangle, its root nearer the joint.
 double DigitShape::outline(const Vec3d& q) const {
   const double half = 0.5 * profile_.nail_length;
-  const double center = lengths_[2] + 0.62 * radius(3) - half;
+  const double center = lengths_[2] + kNailEnd * radius(3) - half;
   const double corner = 0.72 * profile_.nail_width;
   const double x = std::max(std::abs(q.x) - (profile_.nail_width - corner), 0.0);
   const double y = std::max(std::abs(q.y - center) - (half - corner), 0.0);
@@ -93,10 +92,16 @@ double DigitShape::nail_plate(const Vec3d& q) const {
   // The upper part of a wide cylinder that dips towards the tip; the rest is within the finger.
   const double bend = 1.25 * profile_.nail_width;
   const double root = lengths_[2] - 0.5 * profile_.nail_length;
-  const double back = 0.99 * radius(3) + 0.055 * (root + 0.45 - q.y);
+  const double back = 0.99 * radius(3) + 0.10 * (root + 0.25 - q.y);
   const double z = q.z + back - bend;
   const double cylinder = std::sqrt(q.x * q.x + z * z) - bend;
   return smooth_max(cylinder, std::max(outline(q), q.z), 0.06);
+}
+
+bool DigitShape::on_nail(const Vec3d& p) const {
+  constexpr double kOnOutline = 0.03;  // the vertices along the outline are the nail's own
+  const Vec3d q = bones_[2].to_local(p);
+  return nail_outline(p) < kOnOutline && nail_plate(q) < kOnOutline;
 }
 
 double DigitShape::nail_outline(const Vec3d& p) const {
@@ -105,7 +110,7 @@ double DigitShape::nail_outline(const Vec3d& p) const {
 }
 
 double DigitShape::along_nail(const Vec3d& p) const {
-  const double end = lengths_[2] + 0.62 * radius(3);
+  const double end = lengths_[2] + kNailEnd * radius(3);
   return 1 - (end - bones_[2].to_local(p).y) / profile_.nail_length;
 }
 

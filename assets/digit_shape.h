@@ -21,7 +21,9 @@ class DigitShape {
   /// Signed distance to the digit's skin and nail.
   double distance(const Vec3d& p) const;
 
-  /// Below 0 within the nail's outline, seen from its back; large in front of the bone.
+  /// Is this point of the surface on the nail?
+  bool on_nail(const Vec3d& p) const;
+  /// Signed distance to the nail's outline seen from its back; large in front of the bone.
   double nail_outline(const Vec3d& p) const;
   /// 0 at the nail's root, 1 at its free edge, for points on the nail.
   double along_nail(const Vec3d& p) const;

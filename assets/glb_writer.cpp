@@ -14,7 +14,12 @@ namespace {
 // Keeps members in the order they are set, so that a file reads from asset to scene.
 using Json = nlohmann::ordered_json;
 
-enum ComponentType { kUnsignedByte = 5121, kUnsignedShort = 5123, kUnsignedInt = 5125, kFloat = 5126 };
+enum ComponentType {
+  kUnsignedByte = 5121,
+  kUnsignedShort = 5123,
+  kUnsignedInt = 5125,
+  kFloat = 5126
+};
 enum BufferTarget { kNoTarget = 0, kVertices = 34962, kIndices = 34963 };
 
 float rounded(double v) {
@@ -53,8 +58,9 @@ class GlbEncoder {
     if (node.mesh >= 0) out["mesh"] = node.mesh;
     if (node.skin >= 0) out["skin"] = node.skin;
     json_["nodes"].push_back(std::move(out));
-    Json& parent = node.parent < 0 ? json_["scenes"][0]["nodes"]
-                                   : json_["nodes"][static_cast<std::size_t>(node.parent)]["children"];
+    Json& parent = node.parent < 0
+                       ? json_["scenes"][0]["nodes"]
+                       : json_["nodes"][static_cast<std::size_t>(node.parent)]["children"];
     parent.push_back(index);
   }
 

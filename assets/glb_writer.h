@@ -22,7 +22,7 @@ struct GlbMesh {
   std::vector<std::array<std::uint8_t, 4>> joints;    ///< empty where the mesh is not skinned
   std::vector<std::array<std::uint16_t, 4>> weights;  ///< of the joints; they sum to 65535
   std::vector<std::array<std::uint32_t, 3>> triangles;
-  double roughness = 0.6;                             ///< of its material, in [0, 1]
+  double roughness = 0.6;  ///< of its material, in [0, 1]
 };
 
 /// A node at rest, relative to its parent.
@@ -36,7 +36,7 @@ struct GlbNode {
 };
 
 struct GlbSkin {
-  std::vector<int> joints;                                  ///< nodes, the root first
+  std::vector<int> joints;                                    ///< nodes, the root first
   std::vector<std::array<double, 16>> inverse_bind_matrices;  ///< column by column
 };
 

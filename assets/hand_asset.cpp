@@ -20,6 +20,7 @@ GlbMesh make_mesh(const HandSkeleton& skeleton) {
   const DistanceField field = [&](const Vec3d& p) { return shape.distance(p); };
   RemeshOptions options;
   options.edge_length = [&](const Vec3d& p) { return shape.edge_length(p); };
+  options.seam = [&](const Vec3d& p) { return shape.seam(p); };
   options.gradient_step = kGradientStep;
   const TriangleMesh surface =
       remesh(mesh_surface(field, shape.bounds(), kGridCell), field, options);

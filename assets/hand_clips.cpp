@@ -25,15 +25,15 @@ constexpr HandPose kOpen = {{
 
 // Bending fingers come together: the spread of the rest pose is taken back.
 constexpr HandPose kFist = {{
-    {{{22, 30, 24}, {34, 0, 0}, {48, 0, 0}}},
-    {{{78, 0, 7}, {98, 0, 0}, {52, 0, 0}}},
-    {{{80, 0, 1}, {99, 0, 0}, {54, 0, 0}}},
-    {{{80, 0, -5}, {97, 0, 0}, {54, 0, 0}}},
-    {{{76, 0, -12}, {94, 0, 0}, {52, 0, 0}}},
+    {{{25, -34, -10}, {38, -12, -12}, {49, 0, 0}}},
+    {{{84, 0, 7}, {106, 0, 0}, {68, 0, 0}}},
+    {{{86, 0, 1}, {107, 0, 0}, {70, 0, 0}}},
+    {{{85, 0, -5}, {106, 0, 0}, {70, 0, 0}}},
+    {{{82, 0, -12}, {103, 0, 0}, {66, 0, 0}}},
 }};
 
 // The thumb laid into the palm, where no finger is in its way.
-constexpr DigitPose kThumbFolded = {{{20, 30, 22}, {40, 0, 0}, {45, 0, 0}}};
+constexpr DigitPose kThumbFolded = {{{10, -38, 6}, {54, -12, -10}, {58, 0, 0}}};
 
 double ease(double s) {
   s = std::min(std::max(s, 0.0), 1.0);
@@ -152,10 +152,9 @@ Quaternion joint_rotation(const JointAngles& degrees) {
 }
 
 Quaternion operator*(const Quaternion& a, const Quaternion& b) {
-  return {a.w * b.x + a.x * b.w + a.y * b.z - a.z * b.y,
-          a.w * b.y - a.x * b.z + a.y * b.w + a.z * b.x,
-          a.w * b.z + a.x * b.y - a.y * b.x + a.z * b.w,
-          a.w * b.w - a.x * b.x - a.y * b.y - a.z * b.z};
+  return {
+      a.w * b.x + a.x * b.w + a.y * b.z - a.z * b.y, a.w * b.y - a.x * b.z + a.y * b.w + a.z * b.x,
+      a.w * b.z + a.x * b.y - a.y * b.x + a.z * b.w, a.w * b.w - a.x * b.x - a.y * b.y - a.z * b.z};
 }
 
 Quaternion rotation_between(const Basis& parent, const Basis& child) {

@@ -18,8 +18,8 @@ struct HandClip {
   std::vector<std::vector<JointAngles>> poses;  ///< per key, per joint
 };
 
-/// "grasp" (2 s: the open hand closes finger by finger and opens again) and "count" (4 s: from a fist
-/// to five fingers and back). Each ends in the pose it began with.
+/// "grasp" (2 s: the open hand closes finger by finger and opens again) and "count" (4 s: from a
+/// fist to five fingers and back). Each ends in the pose it began with.
 std::vector<HandClip> make_hand_clips(const HandSkeleton& skeleton);
 
 /// The rotation from a joint's rest basis: twist first, then bend, then spread.

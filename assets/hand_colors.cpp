@@ -10,7 +10,7 @@ using Color = Vec3d;
 
 constexpr Color kBack{224, 172, 142}, kPalm{236, 188, 164}, kFlush{208, 120, 104};
 constexpr Color kNail{240, 200, 188}, kNailEdge{250, 238, 228};
-constexpr Color kCuff{244, 242, 236}, kSleeve{52, 82, 128};
+constexpr Color kBand{244, 242, 236}, kSleeve{52, 82, 128};
 
 Color mix(const Color& a, const Color& b, double t) { return a + (b - a) * t; }
 
@@ -57,10 +57,14 @@ Color nail(const HandShape& shape, const Vec3d& p) {
 
 Color color_of(const HandShape& shape, const Vec3d& p, const Vec3d& normal) {
   switch (shape.part(p)) {
-    case HandPart::kNail: return nail(shape, p);
-    case HandPart::kCuff: return kCuff;
-    case HandPart::kSleeve: return kSleeve;
-    case HandPart::kSkin: break;
+    case HandPart::kNail:
+      return nail(shape, p);
+    case HandPart::kBand:
+      return kBand;
+    case HandPart::kSleeve:
+      return kSleeve;
+    case HandPart::kSkin:
+      break;
   }
   return skin(shape, p, normal);
 }
@@ -76,13 +80,13 @@ std::uint8_t linear_from_srgb(double v) {
 std::array<std::uint8_t, 4> surface_color(const HandShape& shape, const Vec3d& p,
                                           const Vec3d& normal) {
   const double shut = 1 - openness(shape, p, normal);
-  const Color c = color_of(shape, p, normal);
+  const HandPart part = shape.part(p);
+  const bool is_cloth = part == HandPart::kBand || part == HandPart::kSleeve;
   // Light that has gone through skin leaves folds warm rather than grey.
-  const bool is_skin = shape.part(p) == HandPart::kSkin;
-  const Color loss = is_skin ? Color{0.30, 0.48, 0.52} : Color{0.25, 0.25, 0.25};
-  const Color shaded{c.x * (1 - loss.x * shut), c.y * (1 - loss.y * shut),
-                     c.z * (1 - loss.z * shut)};
-  return {linear_from_srgb(shaded.x), linear_from_srgb(shaded.y), linear_from_srgb(shaded.z), 255};
+  const Color loss = is_cloth ? Color{0.25, 0.25, 0.25} : Color{0.30, 0.48, 0.52};
+  const Color c = color_of(shape, p, normal);
+  return {linear_from_srgb(c.x * (1 - loss.x * shut)), linear_from_srgb(c.y * (1 - loss.y * shut)),
+          linear_from_srgb(c.z * (1 - loss.z * shut)), 255};
 }
 
 }  // namespace mdk

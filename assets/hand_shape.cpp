@@ -9,25 +9,8 @@ namespace {
 constexpr std::array<Vec3d, 4> kCarpals = {
     {{1.25, 1.5, -0.15}, {0.40, 1.5, -0.25}, {-0.45, 1.45, -0.15}, {-1.15, 1.3, 0.05}}};
 
-/// An oval tube about the y axis, open at its top down to `floor`: a piece of cloth around the arm.
-struct OvalTube {
-  double bottom, top, floor, bottom_width, top_width, cloth, rounding;
-
-  double distance(const Vec3d& p) const {
-    constexpr double kDepth = 0.80;
-    const double s = (p.y - bottom) / (top - bottom);
-    const double z = p.z / kDepth;
-    const double side =
-        (std::sqrt(p.x * p.x + z * z) - (bottom_width + (top_width - bottom_width) * s)) * 0.9;
-    const double solid = smooth_max(side, std::max(bottom - p.y, p.y - top), rounding);
-    const double room = smooth_max(side + cloth, floor - p.y, 0.15);
-    return smooth_max(solid, -room, 0.15);
-  }
-};
-
-constexpr OvalTube kCuff{-6.0, -3.2, -3.9, 3.16, 3.24, 0.30, 0.2};
-constexpr OvalTube kSleeve{-8.6, -4.2, -4.9, 4.00, 3.78, 0.34, 0.5};
-constexpr double kSeam = 0.06;
+// The sleeve: an oval tube about the arm that opens at its top, with a band sewn on.
+constexpr double kSleeveEnd = -8.6, kRim = -3.2, kRimFloor = -3.75, kBand = -4.35;
 
 }  // namespace
 
@@ -42,8 +25,7 @@ double HandShape::distance(const Vec3d& p) const {
   double d = base;
   for (std::size_t i = 0; i < digits_.size(); ++i)
     d = std::min(d, smooth_min(base, digits_[i].distance(p), i == 0 ? 0.9 : 0.6));
-  d = smooth_min(d, cuff(p), kSeam);
-  return smooth_min(d, sleeve(p), kSeam);
+  return smooth_min(d, sleeve(p), 0.1);
 }
 
 double HandShape::palm(const Vec3d& p) const {
@@ -113,26 +95,41 @@ double HandShape::tendons(double d, const Vec3d& p) const {
   return d;
 }
 
-double HandShape::cuff(const Vec3d& p) const { return kCuff.distance(p); }
-double HandShape::sleeve(const Vec3d& p) const { return kSleeve.distance(p); }
+double HandShape::sleeve(const Vec3d& p) const {
+  constexpr double kDepth = 0.80, kCloth = 0.55, kTopWidth = 3.38, kFlare = 0.09;
+  const double z = p.z / kDepth;
+  const double width = kTopWidth + kFlare * (kRim - p.y);
+  const double seam = 0.07 * smooth_step(0.22, 0.0, std::abs(p.y - kBand));
+  const double side = (std::sqrt(p.x * p.x + z * z) - width) * 0.9 + seam;
+  const double solid = smooth_max(side, std::max(kSleeveEnd - p.y, p.y - kRim), 0.6);
+  const double room = smooth_max(side + kCloth, kRimFloor - p.y, 0.3);
+  return smooth_max(solid, -room, 0.45);
+}
 
 HandPart HandShape::part(const Vec3d& p) const {
   constexpr double kOnSurface = 0.05;
-  if (sleeve(p) < kOnSurface) return HandPart::kSleeve;
-  if (cuff(p) < kOnSurface) return HandPart::kCuff;
+  if (sleeve(p) < kOnSurface) return p.y < kBand + 0.02 ? HandPart::kSleeve : HandPart::kBand;
   for (const DigitShape& digit : digits_)
-    if (digit.nail_outline(p) < 0) {
-      const Vec3d q = p - digit.nail_center();
-      if (length(q) < 2 * digit.radius(3)) return HandPart::kNail;
-    }
+    if (digit.on_nail(p)) return HandPart::kNail;
   return HandPart::kSkin;
 }
 
+double HandShape::seam(const Vec3d& p) const {
+  double nearest = p.y - kBand;
+  for (const DigitShape& digit : digits_) {
+    const double outline = digit.nail_outline(p);
+    if (length(p - digit.nail_center()) < 1.5 && std::abs(outline) < std::abs(nearest))
+      nearest = outline;
+  }
+  return nearest;
+}
+
 double HandShape::edge_length(const Vec3d& p) const {
-  constexpr double kCoarse = 0.40, kFinger = 0.27, kCloth = 0.26, kNail = 0.135;
+  constexpr double kCoarse = 0.42, kFinger = 0.275, kCloth = 0.19, kNail = 0.135;
   const auto between = [&](double fine, double t) { return kCoarse + (fine - kCoarse) * t; };
-  const double rims = smooth_step(-5.6, -5.0, p.y) * smooth_step(-2.2, -2.8, p.y) +
-                      smooth_step(-7.4, -8.0, p.y);
+  const double rims =
+      smooth_step(kBand - 0.7, kBand - 0.3, p.y) * smooth_step(kRim + 0.8, kRim + 0.2, p.y) +
+      0.7 * smooth_step(kSleeveEnd + 1.2, kSleeveEnd + 0.6, p.y);
   double len = std::min({between(kFinger, smooth_step(6.5, 9.5, p.y)),
                          between(kFinger, smooth_step(3.2, 4.5, p.x)), between(kCloth, rims)});
   for (const DigitShape& digit : digits_) {

@@ -10,7 +10,7 @@
 namespace mdk {
 
 /// What a point of the surface is made of.
-enum class HandPart { kSkin, kNail, kCuff, kSleeve };
+enum class HandPart { kSkin, kNail, kBand, kSleeve };
 
 class HandShape {
  public:
@@ -21,6 +21,8 @@ class HandShape {
   /// The edge length at which triangles show the shape well: short at nails, long at the arm.
   double edge_length(const Vec3d& p) const;
   HandPart part(const Vec3d& p) const;
+  /// On the surface, signed distance to the nearest line where colours meet.
+  double seam(const Vec3d& p) const;
   Aabbd bounds() const;
 
   const std::vector<DigitShape>& digits() const { return digits_; }
@@ -31,7 +33,6 @@ class HandShape {
   double muscles(double d, const Vec3d& p) const;
   double webs(double d, const Vec3d& p) const;
   double tendons(double d, const Vec3d& p) const;
-  double cuff(const Vec3d& p) const;
   double sleeve(const Vec3d& p) const;
 
   std::vector<DigitShape> digits_;

@@ -5,10 +5,10 @@ namespace {
 
 struct DigitPlan {
   const char* name;
-  Vec3d origin;                            ///< first joint
+  Vec3d origin;                              ///< first joint
   std::array<Vec3d, kPhalanges> directions;  ///< of the bones, any length
   std::array<double, kPhalanges> lengths;
-  Vec3d pad;                               ///< the way the finger's soft side looks
+  Vec3d pad;  ///< the way the finger's soft side looks
 };
 
 constexpr Vec3d kFront{0, 0, 1};
@@ -52,8 +52,8 @@ void add_digit(HandSkeleton& skeleton, int digit, int parent) {
   Vec3d origin = plan.origin;
   for (std::size_t i = 0; i < kPhalanges; ++i) {
     const Basis rest = basis_along(origin, plan.directions[i], plan.pad);
-    parent = add_joint(skeleton, {std::string(plan.name) + "_" + std::to_string(i + 1), parent, rest,
-                                  plan.lengths[i]});
+    parent = add_joint(skeleton, {std::string(plan.name) + "_" + std::to_string(i + 1), parent,
+                                  rest, plan.lengths[i]});
     skeleton.digits[static_cast<std::size_t>(digit)][i] = parent;
     origin = rest.to_world({0, plan.lengths[i], 0});
   }
@@ -75,8 +75,7 @@ HandSkeleton make_hand_skeleton() {
       add_joint(s, {"forearm_twist", s.forearm, basis_along({0, -4, 0}, up, kFront), 4});
   s.hand = add_joint(s, {"hand", s.forearm_twist, basis_along({0, 0, 0}, up, kFront), 9});
   s.ring_metacarpal = add_joint(s, metacarpal("ring_metacarpal", s.hand, {-0.55, 1.6, -0.1}, 3));
-  s.little_metacarpal =
-      add_joint(s, metacarpal("little_metacarpal", s.hand, {-1.2, 1.5, 0.1}, 4));
+  s.little_metacarpal = add_joint(s, metacarpal("little_metacarpal", s.hand, {-1.2, 1.5, 0.1}, 4));
   add_digit(s, 0, s.hand);
   add_digit(s, 1, s.hand);
   add_digit(s, 2, s.hand);

@@ -19,13 +19,13 @@ struct HandJoint {
   double length = 0;  ///< of the bone, to where the next joint sits (or to the tip)
 };
 
-inline constexpr int kDigits = 5;   ///< thumb, index, middle, ring, little
+inline constexpr int kDigits = 5;     ///< thumb, index, middle, ring, little
 inline constexpr int kPhalanges = 3;  ///< joints of a digit; the thumb's first is its metacarpal
 
 struct HandSkeleton {
   std::vector<HandJoint> joints;  ///< parents first; joint 0 is the root
   int forearm = 0, forearm_twist = 0, hand = 0;
-  int ring_metacarpal = 0, little_metacarpal = 0;  ///< these cup the palm
+  int ring_metacarpal = 0, little_metacarpal = 0;             ///< these cup the palm
   std::array<std::array<int, kPhalanges>, kDigits> digits{};  ///< from the palm to the tip
 
   const Basis& rest(int joint) const { return joints[static_cast<std::size_t>(joint)].rest; }

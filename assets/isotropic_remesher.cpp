@@ -93,8 +93,7 @@ class Remesher {
     Index t0 = 0, t1 = 0, c = 0, d = 0;
     if (!find_side(a, b, t0, c) || !find_side(b, a, t1, d)) return;
     const Index m = static_cast<Index>(mesh_.positions.size());
-    mesh_.positions.push_back(
-        project_to_surface(field_, (at(a) + at(b)) * 0.5, options_.gradient_step));
+    mesh_.positions.push_back(settle((at(a) + at(b)) * 0.5));
     const Index n0 = static_cast<Index>(mesh_.triangles.size()), n1 = n0 + 1;
     // (a b c) becomes (a m c) and (m b c); (b a d) becomes (m a d) and (b m d).
     replace_corner(t0, b, m);
@@ -126,7 +125,7 @@ class Remesher {
       for (const Index w : neighbours(b)) shared += v == w;
     // A corner across with three triangles would be left with two, back to back.
     if (shared != 2 || around_[c].size() <= 3 || around_[d].size() <= 3) return;
-    const Vec3d p = project_to_surface(field_, (at(a) + at(b)) * 0.5, options_.gradient_step);
+    const Vec3d p = settle((at(a) + at(b)) * 0.5);
     if (!may_move(a, p, t0, t1) || !may_move(b, p, t0, t1)) return;
 
     at(a) = p;
@@ -143,7 +142,8 @@ class Remesher {
     triangle(t0) = triangle(t1) = {0, 0, 0};
   }
 
-  /// May `v` go to `p`, the triangles `t0` and `t1` apart, with no long edge and no folded triangle?
+  /// May `v` go to `p`, the triangles `t0` and `t1` apart, with no long edge and no folded
+  /// triangle?
   bool may_move(Index v, const Vec3d& p, Index t0, Index t1) {
     for (const Index t : around_[v]) {
       if (t == t0 || t == t1) continue;
@@ -166,8 +166,15 @@ class Remesher {
     for (const auto& [a, b] : edges()) {
       Index t0 = 0, t1 = 0, c = 0, d = 0;
       if (!find_side(a, b, t0, c) || !find_side(b, a, t1, d)) continue;
-      if (flip_helps(a, b, c, d) && flip_is_flat(a, b, c, d)) flip({a, b}, {c, d}, {t0, t1});
+      if (on_seam(a) && on_seam(b)) continue;
+      const bool wanted = (on_seam(c) && on_seam(d)) || flip_helps(a, b, c, d);
+      if (wanted && flip_is_flat(a, b, c, d)) flip({a, b}, {c, d}, {t0, t1});
     }
+  }
+
+  bool on_seam(Index v) const {
+    return options_.seam &&
+           std::abs(options_.seam(mesh_.positions[v])) < 2 * options_.gradient_step;
   }
 
   bool flip_helps(Index a, Index b, Index c, Index d) const {
@@ -183,8 +190,8 @@ class Remesher {
     if (around_[a].size() <= 3 || around_[b].size() <= 3) return false;
     Index t = 0, across = 0;
     if (find_side(c, d, t, across) || find_side(d, c, t, across)) return false;
-    const Vec3d before = normalized(area_normal(at(a), at(b), at(c))) +
-                         normalized(area_normal(at(b), at(a), at(d)));
+    const Vec3d before =
+        normalized(area_normal(at(a), at(b), at(c))) + normalized(area_normal(at(b), at(a), at(d)));
     const Vec3d front = normalized(before);
     const Vec3d n0 = normalized(area_normal(at(c), at(d), at(b)));
     const Vec3d n1 = normalized(area_normal(at(d), at(c), at(a)));
@@ -223,10 +230,21 @@ class Remesher {
       }
       normal = normalized(normal);
       const Vec3d step = sum * (1 / total) - at(v);
-      moved[v] = project_to_surface(field_, at(v) + (step - normal * dot(step, normal)) * 0.7,
-                                    options_.gradient_step);
+      moved[v] = settle(at(v) + (step - normal * dot(step, normal)) * 0.7);
     }
     mesh_.positions = std::move(moved);
+  }
+
+  /// `p` drawn onto the surface, and onto the seam if that is near.
+  Vec3d settle(Vec3d p) const {
+    p = project_to_surface(field_, p, options_.gradient_step);
+    if (!options_.seam) return p;
+    const double reach = 0.45 * options_.edge_length(p);
+    for (int i = 0; i < 2 && std::abs(options_.seam(p)) < reach; ++i) {
+      p = project_to_surface(options_.seam, p, options_.gradient_step);
+      p = project_to_surface(field_, p, options_.gradient_step);
+    }
+    return p;
   }
 
   TriangleMesh compacted() const {

@@ -1,7 +1,7 @@
-// Along a chain of bones each joint takes over at the plane that halves the angle there, with a soft
-// passage about as long as the finger is thick. Which chain a vertex belongs to follows from the
-// distance fields of the digits; between two of them the palm takes the rest. Smoothing over the
-// mesh (heat that flows along the skin, never through the air) then evens out the seams.
+// Along a chain of bones each joint takes over at the plane that halves the angle there, with a
+// soft passage about as long as the finger is thick. Which chain a vertex belongs to follows from
+// the distance fields of the digits; between two of them the palm takes the rest. Smoothing over
+// the mesh (heat that flows along the skin, never through the air) then evens out the seams.
 #include "assets/skin_weights.h"
 
 #include <algorithm>
@@ -105,7 +105,9 @@ class Weighting {
     const double side = smooth_step(1.2, 5.5, p.y) * (1 - thumb);
     const double little = side * smooth_step(-1.2, -2.9, p.x);
     const double ring = side * smooth_step(0.3, -1.4, p.x) * (1 - smooth_step(-1.2, -2.9, p.x));
-    const auto add = [&](int joint, double w) { row[static_cast<std::size_t>(joint)] += share * w; };
+    const auto add = [&](int joint, double w) {
+      row[static_cast<std::size_t>(joint)] += share * w;
+    };
     add(skeleton_.digits[0][0], thumb);
     add(skeleton_.little_metacarpal, hand * little);
     add(skeleton_.ring_metacarpal, hand * ring);
@@ -118,7 +120,7 @@ class Weighting {
   /// for cloth, which only the forearm moves.
   int owner(const Vec3d& p) const {
     const HandPart part = shape_.part(p);
-    if (part == HandPart::kCuff || part == HandPart::kSleeve) return -2;
+    if (part == HandPart::kBand || part == HandPart::kSleeve) return -2;
     for (std::size_t d = 0; d < kDigits; ++d) {
       const DigitShape& digit = shape_.digits()[d];
       const double along = digit.basis(0).to_local(p).y / digit.bone_length(0);

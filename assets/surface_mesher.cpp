@@ -56,7 +56,8 @@ class MarchingTetrahedra {
       count += inside(ids[c]);
     }
     if (count == 0 || count == 8) return;
-    for (const auto& t : kTetrahedra) march_tetrahedron({ids[t[0]], ids[t[1]], ids[t[2]], ids[t[3]]});
+    for (const auto& t : kTetrahedra)
+      march_tetrahedron({ids[t[0]], ids[t[1]], ids[t[2]], ids[t[3]]});
   }
 
   void march_tetrahedron(const std::array<std::size_t, 4>& t) {
