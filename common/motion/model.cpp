@@ -58,4 +58,12 @@ std::uint32_t clip_of_key(const Model& model, std::uint32_t key) {
   return static_cast<std::uint32_t>(after - model.clips.begin()) - 1;
 }
 
+Aabb clip_bounds(const Model& model, std::uint32_t clip) {
+  Aabb bounds;
+  const Clip& keys = model.clips[clip];
+  for (std::uint32_t k = 0; k < keys.key_count; ++k)
+    for (const Aabb& box : model.key_world_boxes(keys.first_key + k)) bounds.extend(box);
+  return bounds;
+}
+
 }  // namespace mdk

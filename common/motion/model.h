@@ -123,6 +123,9 @@ KeyInterval locate_time(const Model& model, std::uint32_t clip, double seconds);
 /// Exactly at a key.
 inline KeyInterval at_key(std::uint32_t key) { return {key, key, 0.0f}; }
 
+/// A box that holds the mesh at every time of a clip. Cost: O(keys of the clip * clusters).
+Aabb clip_bounds(const Model& model, std::uint32_t clip);
+
 /// Which clip a key belongs to. Cost: O(log clips).
 std::uint32_t clip_of_key(const Model& model, std::uint32_t key);
 

@@ -3,6 +3,7 @@
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "common/base/error.h"
 #include "common/base/isa.h"
@@ -79,6 +80,15 @@ std::vector<PlannedFrame> plan_frames(const RenderArguments& arguments, const Mo
   return frames;
 }
 
+/// Of all clips that are rendered, whole: the camera is the same for any choice of their keys.
+Aabb bounds_of(const Model& model, const std::vector<PlannedFrame>& frames) {
+  std::set<std::uint32_t> clips;
+  for (const PlannedFrame& frame : frames) clips.insert(frame.clip);
+  Aabb bounds;
+  for (const std::uint32_t clip : clips) bounds.extend(clip_bounds(model, clip));
+  return bounds;
+}
+
 Json stats_row(const Model& model, const PlannedFrame& frame, const FrameStats& stats,
                const FrameStats& counted) {
   const WorkPerRay work = work_per_ray(counted.counters, counted.rays);
@@ -104,7 +114,7 @@ Json render_frames(const RenderArguments& arguments, const Model& model,
   ProgressBar progress(std::cerr, progress_style(arguments.messages));
   Renderer renderer(model, arguments.technique);
   FrameRequest request;
-  request.camera = choose_camera(arguments.view, model.bounds, size);
+  request.camera = choose_camera(arguments.view, bounds_of(model, frames), size);
   request.width = size.width;
   request.height = size.height;
   request.shading = find_shading(arguments.view.shading);

@@ -102,5 +102,18 @@ TEST(ClipOfKey, FindsTheClipThatHoldsTheKey) {
   for (std::uint32_t key = 0; key < 8; ++key) EXPECT_EQ(clip_of_key(model, key), expected[key]);
 }
 
+TEST(ClipBounds, HoldEveryClustersBoxAtEveryKeyOfTheClipAndNoOther) {
+  ModelStorage storage = three_clips();
+  storage.clusters.resize(2);
+  for (std::size_t i = 0; i < 8 * 2; ++i) {
+    const auto at = static_cast<float>(i);
+    storage.cluster_world_boxes.push_back({{at, 0, 0}, {at + 1, 1, 1}});
+  }
+  const Model model = storage.view();
+  EXPECT_EQ(clip_bounds(model, 0), (Aabb{{0, 0, 0}, {6, 1, 1}}));
+  EXPECT_EQ(clip_bounds(model, 1), (Aabb{{6, 0, 0}, {8, 1, 1}}));
+  EXPECT_EQ(clip_bounds(model, 2), (Aabb{{8, 0, 0}, {16, 1, 1}}));
+}
+
 }  // namespace
 }  // namespace mdk
