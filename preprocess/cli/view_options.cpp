@@ -40,9 +40,10 @@ void add_view_options(CLI::App& command, ViewOptions& options) {
                       " each (default: 512x512).")
       ->type_name("WxH");
   command
-      .add_option("--camera", options.camera,
-                  "Ten numbers in one argument: eye xyz, target xyz, up xyz, and the vertical\n"
-                  "field of view in degrees (default: all of the model at all times fits).")
+      .add_option(
+          "--camera", options.camera,
+          "Ten numbers in one argument: eye xyz, target xyz, up xyz, and the vertical\n"
+          "field of view in degrees (default: the model fits at all times of the clips shown).")
       ->type_name("\"EYE TARGET UP FOV\"");
   std::string modes;
   for (const ShadingInfo& mode : shading_table())
