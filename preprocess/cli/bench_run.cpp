@@ -50,8 +50,8 @@ void time_round(const BenchConfig& config, Renderer& renderer, TechniqueBench& r
     const FrameStats& stats = renderer.render(request_of(config, config.keys[k]));
     if (result.frames.size() == k) {
       result.frames.push_back({config.keys[k], stats});
-    } else if (stats.time_to_image_ms() < result.frames[k].stats.time_to_image_ms()) {
-      result.frames[k].stats = stats;
+    } else {
+      keep_faster(result.frames[k], stats);
     }
   }
 }
@@ -76,6 +76,10 @@ FrameStats TechniqueBench::median_phases() const {
 
 double TechniqueBench::median_time_to_image_ms() const {
   return median_over(frames, [](const FrameStats& s) { return s.time_to_image_ms(); });
+}
+
+void keep_faster(BenchFrame& frame, const FrameStats& another) {
+  if (another.time_to_image_ms() < frame.stats.time_to_image_ms()) frame.stats = another;
 }
 
 std::vector<TechniqueBench> bench_techniques(const Model& model, const BenchConfig& config,

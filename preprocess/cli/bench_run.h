@@ -50,6 +50,9 @@ struct TechniqueBench {
   double median_time_to_image_ms() const;
 };
 
+/// Takes over another round's figures where their time to image is shorter.
+void keep_faster(BenchFrame& frame, const FrameStats& another);
+
 /// In the order of `config.techniques`. Throws Error (kUsage) for a size or camera that cannot be.
 std::vector<TechniqueBench> bench_techniques(const Model& model, const BenchConfig& config,
                                              ProgressSink& progress);

@@ -61,7 +61,9 @@ bool ProgressBar::due(std::string_view stage, double fraction, double now) const
 
 void ProgressBar::report(std::string_view stage, double fraction) {
   throw_if_interrupted();
-  const double shown = fraction >= 0 ? std::min(fraction, 1.0) : 0.0;
+  // A stage that starts again at 0 must not pull the bar back.
+  const double shown = fraction > furthest_ ? std::min(fraction, 1.0) : furthest_;
+  furthest_ = shown;
   const double now = clock_();
   if (!due(stage, shown, now)) return;
   drawn_stage_ = stage;

@@ -18,7 +18,8 @@ enum class ProgressStyle {
   kBar,    ///< redrawn at most ten times a second
 };
 
-/// report() throws Interrupted after Ctrl-C, in every style. Removes its bar when it ends.
+/// report() throws Interrupted after Ctrl-C, in every style. What is shown never goes back. Removes
+/// its bar when it ends.
 class ProgressBar final : public ProgressSink {
  public:
   /// Seconds since some moment; a test's own clock makes what is printed exact.
@@ -47,6 +48,7 @@ class ProgressBar final : public ProgressSink {
   double drawn_;  ///< when something was last drawn; at first, the start
   std::string drawn_stage_;
   double drawn_fraction_ = 0;
+  double furthest_ = 0;
   bool bar_visible_ = false;
 };
 

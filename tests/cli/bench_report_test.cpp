@@ -42,6 +42,21 @@ TEST(Median, IsTheMiddleOrTheMeanOfTheTwoInTheMiddle) {
   EXPECT_EQ(median({4, 1, 3, 2}), 2.5);
 }
 
+TEST(BenchRun, AFrameKeepsAllPhasesOfItsFastestRound) {
+  BenchFrame frame;
+  frame.stats.update_ms = 1;
+  frame.stats.trace_ms = 9;
+  FrameStats faster, slower;
+  faster.update_ms = 3;
+  faster.trace_ms = 6;
+  slower.trace_ms = 11;
+  keep_faster(frame, slower);
+  EXPECT_EQ(frame.stats.trace_ms, 9);
+  keep_faster(frame, faster);
+  EXPECT_EQ(frame.stats.update_ms, 3);
+  EXPECT_EQ(frame.stats.trace_ms, 6);
+}
+
 TEST(BenchReport, JsonHasMediansPerRayFiguresAndFrames) {
   const auto json = nlohmann::json::parse(bench_json({"avx2", 2, 640, 480}, made_up_models()));
   EXPECT_EQ(json["schema"], "mdprep-bench/1");

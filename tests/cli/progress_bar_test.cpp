@@ -102,16 +102,22 @@ TEST(ProgressBar, SaysNothingWhenToldTo) {
   EXPECT_EQ(out.str(), "");
 }
 
-TEST(ProgressBar, TakesFractionsThatAreNone) {
+TEST(ProgressBar, NeverGoesBackNorPastTheEnd) {
   std::ostringstream out;
   double now = 0;
   ProgressBar progress(out, ProgressStyle::kLines, [&] { return now; });
-  for (const auto& [stage, fraction] :
-       {std::pair{"a", -1.0}, std::pair{"b", 7.0}, std::pair{"c", std::nan("")}}) {
-    now += 0.5;
+  for (const auto& [stage, fraction] : {std::pair{"a", -1.0},
+                                        {"b", std::nan("")},
+                                        {"c", 0.7},
+                                        {"d", 0.1},
+                                        {"e", 7.0},
+                                        {"f", 0.0}}) {
+    now += 0.301;
     progress.report(stage, fraction);
   }
-  EXPECT_EQ(out.str(), "mdprep:   0 %  a\nmdprep: 100 %  b\nmdprep:   0 %  c\n");
+  EXPECT_EQ(out.str(),
+            "mdprep:   0 %  a\nmdprep:   0 %  b\nmdprep:  70 %  c\nmdprep:  70 %  d, 0:01 left\n"
+            "mdprep: 100 %  e\nmdprep: 100 %  f\n");
 }
 
 TEST(ProgressBar, APartCoversItsShareOfTheWhole) {
