@@ -292,6 +292,7 @@ bool App::draw_is_due() const {
 
 void App::draw() {
   last_draw_time_ = clock_.seconds();
+  ++window_draws_;
   redraws_ = std::max(0, redraws_ - 1);
   window_.begin_frame();
   blit_.draw(picture_pixels(), window_.framebuffer_height());
@@ -385,7 +386,8 @@ void App::finish() {
     write_png(options_.screenshot, picture.width, picture.height, picture.pixels);
   }
   if (options_.print_state)
-    std::cout << state_json(state_, {frames_shown_, window_.width(), window_.height(), widgets_})
+    std::cout << state_json(state_, {frames_shown_, window_draws_, window_.width(),
+                                     window_.height(), widgets_})
               << std::endl;
 }
 

@@ -86,7 +86,7 @@ class App {
   double full_picture_ms_ = 0;  ///< the last frame's time, scaled to full resolution
   Picture shown_;
   std::deque<double> shown_times_;
-  std::uint64_t frames_shown_ = 0;
+  std::uint64_t frames_shown_ = 0, window_draws_ = 0;
 
   RenderWorker worker_;  ///< last: it goes first, while the window still can be woken
 };

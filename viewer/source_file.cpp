@@ -18,7 +18,7 @@ void refuse_source_file(const std::string& path) {
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   if (std::find(kSources.begin(), kSources.end(), extension) == kSources.end()) return;
   const std::string name = file.filename().string(), baked = file.stem().string() + ".mdk";
-  throw bad_input(path, "bake it first: mdprep bake " + name + " -o " + baked);
+  throw bad_input(name, "bake it first: mdprep bake " + path + " -o " + baked);
 }
 
 }  // namespace mdk

@@ -91,6 +91,7 @@ std::string state_json(const ViewState& state, const WindowReport& window) {
   json["counting"] = state.settings.count_work;
   json["camera"] = camera_json(state.camera.camera());
   json["frames_shown"] = window.frames_shown;
+  json["window_draws"] = window.window_draws;
   json["last_frame"] = frame_json(state);
   json["help"] = state.help_open;
   json["panel"] = state.panel == PanelMode::kShown;

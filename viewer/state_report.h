@@ -11,7 +11,7 @@ namespace mdk {
 
 /// Facts of the window that are not in the ViewState.
 struct WindowReport {
-  std::uint64_t frames_shown = 0;
+  std::uint64_t frames_shown = 0, window_draws = 0;
   float width = 0, height = 0;
   WidgetMap widgets;
 };
