@@ -36,9 +36,9 @@ constexpr std::array kBindings = {
 
 constexpr std::array kHelp = {
     ShortcutHelp{"Space", "play or pause"},
-    ShortcutHelp{"Left / Right", "to the key before or behind"},
-    ShortcutHelp{"Home / End", "to the start or end of the clip"},
-    ShortcutHelp{"Up / Down or [ ]", "technique before or behind"},
+    ShortcutHelp{"Left / Right", "previous or next key"},
+    ShortcutHelp{"Home / End", "start or end of the clip"},
+    ShortcutHelp{"Up / Down or [ ]", "previous or next technique"},
     ShortcutHelp{"1 to 9", "technique by number"},
     ShortcutHelp{"S", "next shading"},
     ShortcutHelp{"F", "fit the model, keeping the direction"},

@@ -11,11 +11,11 @@
 namespace mdk {
 namespace {
 
-// The smallest of 1, 2, 5 times a power of ten that is not below `value`.
+// The smallest round number that is not below `value`.
 double round_up_to_nice(double value) {
   if (!(value > 0)) return 1;
   const double decade = std::pow(10.0, std::floor(std::log10(value)));
-  for (const double step : {1.0, 2.0, 5.0})
+  for (const double step : {1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0})
     if (value <= step * decade) return step * decade;
   return 10 * decade;
 }

@@ -44,12 +44,14 @@ void draw_technique_row(std::size_t row, const Theme& theme, ViewState& state, U
   ImGui::PopID();
   record(result.widgets, "technique:" + id);
   if (ImGui::IsItemHovered()) {
+    ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(8 * theme.scale, 5 * theme.scale));
     ImGui::BeginTooltip();
     ImGui::PushTextWrapPos(ImGui::GetFontSize() * 22);
     ImGui::Text("%s", std::string(info.summary).c_str());
     ImGui::TextDisabled("%s  ·  %s", id.c_str(), std::string(info.source).c_str());
     ImGui::PopTextWrapPos();
     ImGui::EndTooltip();
+    ImGui::PopStyleVar();
   }
 
   ImDrawList& draw = *ImGui::GetWindowDrawList();
@@ -103,7 +105,10 @@ void draw_frame_times(const Theme& theme, const ViewState& state) {
   ImGui::SameLine(after_number + 10 * theme.scale);
   ImGui::BeginGroup();
   ImGui::TextDisabled("time to image");
-  ImGui::TextDisabled("%.0f shown per second", state.shown_per_second);
+  if (state.shown_per_second > 0)
+    ImGui::TextDisabled("%.0f shown per second", state.shown_per_second);
+  else
+    ImGui::TextDisabled("at rest");
   ImGui::EndGroup();
 
   const std::array<FrameStage, 4> stages = {FrameStage{"pose", stats.pose_ms},
@@ -138,8 +143,8 @@ void draw_work(const Theme& theme, ViewState& state, UiResult& result) {
   const auto per_ray = [&](std::uint64_t count) -> std::string {
     if (!known) return "-";
     std::array<char, 32> text{};
-    std::snprintf(text.data(), text.size(), "%.2f",
-                  static_cast<double>(count) / static_cast<double>(work->rays));
+    const double each = static_cast<double>(count) / static_cast<double>(work->rays);
+    std::snprintf(text.data(), text.size(), "%.*f", each < 1 ? 3 : 2, each);
     return text.data();
   };
   const TraceCounters counters = work ? work->counters : TraceCounters{};

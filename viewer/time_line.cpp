@@ -30,10 +30,10 @@ void draw_transport(const Theme& theme, const Playback& playback, UiResult& resu
     ImGui::SameLine(0, 3 * theme.scale);
   };
   button("start", Icon::kStart, Command::kStart, "To the start (Home)");
-  button("previous-key", Icon::kPreviousKey, Command::kPreviousKey, "Key before (Left)");
+  button("previous-key", Icon::kPreviousKey, Command::kPreviousKey, "Previous key (Left)");
   button("play", playback.playing() ? Icon::kPause : Icon::kPlay, Command::kPlayPause,
          playback.playing() ? "Pause (Space)" : "Play (Space)");
-  button("next-key", Icon::kNextKey, Command::kNextKey, "Key behind (Right)");
+  button("next-key", Icon::kNextKey, Command::kNextKey, "Next key (Right)");
   button("end", Icon::kEnd, Command::kEnd, "To the end (End)");
 }
 
