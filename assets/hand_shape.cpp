@@ -25,7 +25,7 @@ double HandShape::distance(const Vec3d& p) const {
   double d = base;
   for (std::size_t i = 0; i < digits_.size(); ++i)
     d = std::min(d, smooth_min(base, digits_[i].distance(p), i == 0 ? 0.9 : 0.6));
-  return smooth_min(d, sleeve(p), 0.1);
+  return smooth_min(d, sleeve(p), 0.35);
 }
 
 double HandShape::palm(const Vec3d& p) const {
@@ -88,15 +88,15 @@ double HandShape::tendons(double d, const Vec3d& p) const {
     const double r = digits_[i].radius(0);
     const Vec3d bump = mcp.to_local(p) - Vec3d{0, 0.05, -0.30 * r};
     d = smooth_min(d, ellipsoid(bump, {0.80 * r, 0.95 * r, 0.86 * r}), 0.35);
-    const Vec3d start{0.25 * mcp.origin.x, 2.6, -1.22};
-    const Vec3d end = mcp.to_world({0, -0.5, -0.90 * r});
+    const Vec3d start{0.25 * mcp.origin.x, 2.6, -1.18};
+    const Vec3d end = mcp.to_world({0, -0.5, -0.86 * r});
     d = smooth_min(d, rounded_cone_between(p, start, 0.12, end, 0.16), 0.7);
   }
   return d;
 }
 
 double HandShape::sleeve(const Vec3d& p) const {
-  constexpr double kDepth = 0.80, kCloth = 0.55, kTopWidth = 3.38, kFlare = 0.09;
+  constexpr double kDepth = 0.80, kCloth = 0.52, kTopWidth = 3.52, kFlare = 0.09;
   const double z = p.z / kDepth;
   const double width = kTopWidth + kFlare * (kRim - p.y);
   const double seam = 0.07 * smooth_step(0.22, 0.0, std::abs(p.y - kBand));
@@ -125,7 +125,7 @@ double HandShape::seam(const Vec3d& p) const {
 }
 
 double HandShape::edge_length(const Vec3d& p) const {
-  constexpr double kCoarse = 0.42, kFinger = 0.275, kCloth = 0.19, kNail = 0.135;
+  constexpr double kCoarse = 0.43, kFinger = 0.275, kCloth = 0.19, kNail = 0.135;
   const auto between = [&](double fine, double t) { return kCoarse + (fine - kCoarse) * t; };
   const double rims =
       smooth_step(kBand - 0.7, kBand - 0.3, p.y) * smooth_step(kRim + 0.8, kRim + 0.2, p.y) +

@@ -211,9 +211,8 @@ class Remesher {
   }
 
   /// Each vertex goes to the middle of its triangles, big ones (for their place) counting more, but
-  /// stays on the surface.
+  /// stays on the surface and folds nothing.
   void slide_vertices() {
-    std::vector<Vec3d> moved = mesh_.positions;
     for (Index v = 0; v < around_.size(); ++v) {
       if (around_[v].empty()) continue;
       Vec3d sum, normal;
@@ -230,9 +229,20 @@ class Remesher {
       }
       normal = normalized(normal);
       const Vec3d step = sum * (1 / total) - at(v);
-      moved[v] = settle(at(v) + (step - normal * dot(step, normal)) * 0.7);
+      const Vec3d p = settle(at(v) + (step - normal * dot(step, normal)) * 0.7);
+      if (folded_triangles(v, p, normal) <= folded_triangles(v, at(v), normal)) at(v) = p;
     }
-    mesh_.positions = std::move(moved);
+  }
+
+  /// How many triangles around `v` would turn away from `front` if it were at `p`.
+  int folded_triangles(Index v, const Vec3d& p, const Vec3d& front) {
+    int folded = 0;
+    for (const Index t : around_[v]) {
+      std::array<Vec3d, 3> q;
+      for (std::size_t i = 0; i < 3; ++i) q[i] = triangle(t)[i] == v ? p : at(triangle(t)[i]);
+      folded += dot(normalized(area_normal(q[0], q[1], q[2])), front) < 0.1;
+    }
+    return folded;
   }
 
   /// `p` drawn onto the surface, and onto the seam if that is near.
