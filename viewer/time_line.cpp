@@ -56,7 +56,8 @@ void draw_choices(const Theme& theme, Playback& playback, UiResult& result) {
   record(result.widgets, "speed");
 
   ImGui::SameLine();
-  ImGui::SetNextItemWidth(170 * theme.scale);
+  const float room = ImGui::GetWindowContentRegionMax().x - ImGui::GetCursorPosX();
+  ImGui::SetNextItemWidth(std::clamp(room, 1.0f, 170 * theme.scale));
   const auto& clips = playback.clips();
   const char* shown = clips.empty() ? "no clip" : clips[playback.clip()].name.c_str();
   if (ImGui::BeginCombo("##clip", shown)) {

@@ -13,6 +13,7 @@
 #include "tests/formats/temp_folder.h"
 #include "tests/viewer/mdview_session.h"
 #include "tests/viewer/waving_bar.h"
+#include "tests/viewer/x_drop.h"
 
 namespace mdk::test {
 namespace {
@@ -295,6 +296,19 @@ TEST_F(MdviewGui, ScriptedRunsOnBadFilesEndWithTheirStatus) {
   result = start({"bar.mdk", "--clip", "dance", "--quit-after", "2"})->finish();
   EXPECT_EQ(result.status, 2);
   EXPECT_THAT(result.state["error"].get<std::string>(), HasSubstr("\"wave\" \"nod\""));
+}
+
+TEST_F(MdviewGui, AFileDroppedOnTheWindowIsOpenedAndABadOneLeavesTheOldOneOpen) {
+  const auto session = start({"--size", "800x600"});
+  session->wait_for_window();
+  drop_file(server_->display(), "mdview", folder_.file("bar.mdk"));
+  session->xdotool({"sleep", "1"});
+  drop_file(server_->display(), "mdview", folder_.file("hand.glb"));
+  const auto state = session->quit().state;
+  EXPECT_EQ(state["file"], folder_.file("bar.mdk"));
+  EXPECT_EQ(state["clip"], "wave");
+  EXPECT_GT(state["last_frame"]["hits"], 0);
+  EXPECT_THAT(state["error"].get<std::string>(), HasSubstr("mdprep bake"));
 }
 
 TEST_F(MdviewGui, OpensWithoutAFile) {
