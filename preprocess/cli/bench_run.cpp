@@ -59,6 +59,7 @@ void time_round(const BenchConfig& config, Renderer& renderer, TechniqueBench& r
 template <class Value>
 double median_over(const std::vector<BenchFrame>& frames, const Value& value) {
   std::vector<double> values;
+  values.reserve(frames.size());
   for (const BenchFrame& frame : frames) values.push_back(value(frame.stats));
   return median(std::move(values));
 }
