@@ -64,7 +64,7 @@ class StopRule {
         return;
       }
       best_ = clustering;
-    } else if (first || step.cost < best_cost_) {
+    } else if (first || pays(step)) {
       best_ = clustering;
       best_cost_ = step.cost;
     } else if (step.clusters >= best_.cluster_count + options_->patience) {
@@ -83,6 +83,11 @@ class StopRule {
   Clustering take_best() { return std::move(best_); }
 
  private:
+  bool pays(const GrowthStep& step) const {
+    const double added = step.clusters - best_.cluster_count;
+    return step.cost < best_cost_ * (1 - options_->min_gain * added);
+  }
+
   const GrowthOptions* options_;
   Clustering best_;
   double best_cost_ = 0, last_rms_ = 0;

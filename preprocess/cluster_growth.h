@@ -17,7 +17,8 @@ struct GrowthOptions {
   std::uint32_t clusters = 0;          ///< exactly so many; 0: as many as pay
   std::optional<double> stop_percent;  ///< stop when a cluster lowers the RMS residual by less
   std::uint32_t limit = 64;            ///< most clusters without an exact count
-  std::uint32_t patience = 4;          ///< clusters added without a lower cost before giving up
+  double min_gain = 0.005;             ///< share of the cost that every cluster must save to pay
+  std::uint32_t patience = 4;          ///< clusters added that do not pay before giving up
   bool fixed_rest = false;             ///< keep the rest row instead of searching again on the way
   CostOptions cost;
 };

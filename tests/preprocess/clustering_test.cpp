@@ -179,11 +179,16 @@ TEST(Clustering, ThePercentRuleStopsWhereAClusterGainsLess) {
   }
 }
 
-TEST(Clustering, TheCostRuleReturnsTheCheapestStepItSaw) {
+TEST(Clustering, TheCostRuleReturnsTheStepAfterWhichNoClusterPays) {
   const Case c(wild_motion(10, 12));
-  const Growth growth = grow(c);
-  for (const GrowthStep& step : growth.steps)
-    EXPECT_LE(growth.steps[growth.clustering.cluster_count - 1].cost, step.cost);
+  const GrowthOptions options;
+  const Growth growth = grow(c, options);
+  const std::uint32_t chosen = growth.clustering.cluster_count;
+  EXPECT_GT(chosen, 1u);
+  for (const GrowthStep& step : growth.steps) {
+    const double added = static_cast<double>(step.clusters) - chosen;
+    EXPECT_GE(step.cost, growth.steps[chosen - 1].cost * (1 - options.min_gain * added));
+  }
 }
 
 }  // namespace
