@@ -6,14 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "assets/quaternion.h"
 #include "common/math/vec3.h"
 
 namespace mdk {
-
-/// A rotation as a unit quaternion.
-struct Quaternion {
-  double x = 0, y = 0, z = 0, w = 1;
-};
 
 struct GlbMesh {
   std::string name;

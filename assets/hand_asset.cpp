@@ -5,6 +5,7 @@
 #include "assets/hand_shape.h"
 #include "assets/hand_skeleton.h"
 #include "assets/isotropic_remesher.h"
+#include "assets/quaternion.h"
 #include "assets/skin_weights.h"
 #include "assets/surface_mesher.h"
 

@@ -4,7 +4,6 @@
 
 #include <array>
 #include <cmath>
-#include <numbers>
 
 namespace mdk {
 namespace {
@@ -135,12 +134,6 @@ HandClip count(const HandSkeleton& skeleton) {
   return script.play("count", 4);
 }
 
-Quaternion about(std::size_t axis, double degrees) {
-  const double half = degrees * std::numbers::pi / 360;
-  const double s = std::sin(half);
-  return {axis == 0 ? s : 0, axis == 1 ? s : 0, axis == 2 ? s : 0, std::cos(half)};
-}
-
 }  // namespace
 
 std::vector<HandClip> make_hand_clips(const HandSkeleton& skeleton) {
@@ -148,23 +141,7 @@ std::vector<HandClip> make_hand_clips(const HandSkeleton& skeleton) {
 }
 
 Quaternion joint_rotation(const JointAngles& degrees) {
-  return about(2, degrees.z) * about(0, degrees.x) * about(1, degrees.y);
-}
-
-Quaternion operator*(const Quaternion& a, const Quaternion& b) {
-  return {
-      a.w * b.x + a.x * b.w + a.y * b.z - a.z * b.y, a.w * b.y - a.x * b.z + a.y * b.w + a.z * b.x,
-      a.w * b.z + a.x * b.y - a.y * b.x + a.z * b.w, a.w * b.w - a.x * b.x - a.y * b.y - a.z * b.z};
-}
-
-Quaternion rotation_between(const Basis& parent, const Basis& child) {
-  // Columns: the child's axes in the parent's. Rest bases differ by less than half a turn, so the
-  // trace stays well above -1.
-  const Vec3d x = parent.vector_to_local(child.x), y = parent.vector_to_local(child.y),
-              z = parent.vector_to_local(child.z);
-  const double w = 0.5 * std::sqrt(1 + x.x + y.y + z.z);
-  const double s = 0.25 / w;
-  return {(y.z - z.y) * s, (z.x - x.z) * s, (x.y - y.x) * s, w};
+  return rotation_about(2, degrees.z) * rotation_about(0, degrees.x) * rotation_about(1, degrees.y);
 }
 
 }  // namespace mdk

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "assets/glb_writer.h"
 #include "assets/hand_skeleton.h"
+#include "assets/quaternion.h"
 
 namespace mdk {
 
@@ -24,10 +24,5 @@ std::vector<HandClip> make_hand_clips(const HandSkeleton& skeleton);
 
 /// The rotation from a joint's rest basis: twist first, then bend, then spread.
 Quaternion joint_rotation(const JointAngles& degrees);
-
-Quaternion operator*(const Quaternion& a, const Quaternion& b);
-
-/// The rotation that takes the axes of `parent` to those of `child`.
-Quaternion rotation_between(const Basis& parent, const Basis& child);
 
 }  // namespace mdk

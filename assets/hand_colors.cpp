@@ -83,7 +83,7 @@ std::array<std::uint8_t, 4> surface_color(const HandShape& shape, const Vec3d& p
   const HandPart part = shape.part(p);
   const bool is_cloth = part == HandPart::kBand || part == HandPart::kSleeve;
   // Light that has gone through skin leaves folds warm rather than grey.
-  const Color loss = is_cloth ? Color{0.25, 0.25, 0.25} : Color{0.30, 0.48, 0.52};
+  const Color loss = is_cloth ? Color{0.12, 0.12, 0.12} : Color{0.30, 0.48, 0.52};
   const Color c = color_of(shape, p, normal);
   return {linear_from_srgb(c.x * (1 - loss.x * shut)), linear_from_srgb(c.y * (1 - loss.y * shut)),
           linear_from_srgb(c.z * (1 - loss.z * shut)), 255};

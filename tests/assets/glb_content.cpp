@@ -1,5 +1,6 @@
 #include "tests/assets/glb_content.h"
 
+#include <cmath>
 #include <cstring>
 #include <fstream>
 #include <iterator>
@@ -36,6 +37,21 @@ std::size_t component_count(const std::string& type) {
   return type == "VEC4" ? 4 : 16;
 }
 
+/// The description without the bounds, which are floats and follow from the numbers.
+nlohmann::json structure(const GlbContent& glb) {
+  nlohmann::json json = glb.json;
+  for (auto& accessor : json["accessors"]) {
+    accessor.erase("min");
+    accessor.erase("max");
+  }
+  return json;
+}
+
+double tolerance(const nlohmann::json& accessor) {
+  if (accessor.at("componentType") == 5126) return 1e-4;
+  return accessor.value("normalized", false) ? 2 : 0;
+}
+
 }  // namespace
 
 std::vector<double> GlbContent::numbers(std::size_t accessor) const {
@@ -67,6 +83,19 @@ std::vector<double> GlbContent::attribute(const std::string& name) const {
 
 std::vector<double> GlbContent::indices() const {
   return numbers(primitive().at("indices").get<std::size_t>());
+}
+
+std::string difference(const GlbContent& a, const GlbContent& b) {
+  if (structure(a) != structure(b)) return "the descriptions differ";
+  for (std::size_t i = 0; i < a.json["accessors"].size(); ++i) {
+    const double allowed = tolerance(a.json["accessors"][i]);
+    const auto x = a.numbers(i), y = b.numbers(i);
+    for (std::size_t k = 0; k < x.size(); ++k)
+      if (std::abs(x[k] - y[k]) > allowed)
+        return "accessor " + std::to_string(i) + ", number " + std::to_string(k) + ": " +
+               std::to_string(x[k]) + " and " + std::to_string(y[k]);
+  }
+  return {};
 }
 
 GlbContent parse_glb(const std::vector<std::uint8_t>& file) {

@@ -20,6 +20,10 @@ struct GlbContent {
   const nlohmann::json& primitive() const { return json["meshes"][0]["primitives"][0]; }
 };
 
+/// What is different in `b`, in words; empty where both hold the same. Whole numbers must be equal,
+/// normalised ones within two steps, floats within 1e-4: mathematical libraries round differently.
+std::string difference(const GlbContent& a, const GlbContent& b);
+
 /// Throws where the container is not a well-formed version 2 file.
 GlbContent parse_glb(const std::vector<std::uint8_t>& file);
 std::vector<std::uint8_t> read_bytes(const std::string& path);
