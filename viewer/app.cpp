@@ -4,13 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
 #include <iostream>
 
 #include "common/trace/technique.h"
 #include "formats/image_writer.h"
 #include "viewer/overlays.h"
+#include "viewer/picture_name.h"
 #include "viewer/source_file.h"
 #include "viewer/state_report.h"
 #include "viewer/time_line.h"
@@ -248,12 +248,26 @@ RenderJob App::wanted_job() const {
   return job;
 }
 
-void App::request_picture() {
-  if (!state_.file) return;
-  const RequestPolicy::Situation situation{clock_.seconds(), worker_.busy(),
-                                           state_.settings.count_work,
-                                           state_.settings.keep_tracing || scripted()};
-  if (auto job = requests_.next(wanted_job(), situation)) worker_.request(std::move(*job));
+bool App::request_picture(Repeat repeat) {
+  if (!state_.file) return false;
+  const RequestPolicy::Situation situation{
+      clock_.seconds(), worker_.busy(), state_.settings.count_work,
+      repeat == Repeat::kAsChosen && (state_.settings.keep_tracing || scripted())};
+  auto job = requests_.next(wanted_job(), situation);
+  if (job) worker_.request(std::move(*job));
+  return job.has_value();
+}
+
+// Waits for the picture of the state as it is, so that what is printed and saved belongs together.
+void App::settle() {
+  motion_ = Motion::kStill;
+  bool asked = true;
+  while (asked || worker_.busy()) {
+    show_finished_frame();
+    asked = request_picture(Repeat::kNever);
+    window_.wait_events(kDrawSeconds);
+  }
+  show_finished_frame();
 }
 
 Layout App::layout() const {
@@ -311,7 +325,7 @@ void App::draw() {
   widgets_ = std::move(result.widgets);
   if (save_window_) save_window();
   for (const Action& action : result.actions) execute(action);
-  request_picture();
+  request_picture(Repeat::kAsChosen);
   window_.present();
   // A scripted run with nothing to trace still comes to its end.
   if (scripted() && (!state_.file || requests_.failed())) ++frames_shown_;
@@ -357,7 +371,8 @@ void App::save_window() {
 
 void App::save(const Picture& picture) {
   try {
-    const std::string name = free_file_name();
+    const std::string name = free_picture_name(
+        state_.file ? std::filesystem::path(state_.file_name).stem().string() : "mdview");
     write_png(name, picture.width, picture.height, picture.pixels);
     show_notice("Saved " + name + " (" + std::to_string(picture.width) + " x " +
                 std::to_string(picture.height) + ")");
@@ -366,20 +381,8 @@ void App::save(const Picture& picture) {
   }
 }
 
-std::string App::free_file_name() const {
-  const std::string stem =
-      state_.file ? std::filesystem::path(state_.file_name).stem().string() : "mdview";
-  for (int number = 1; number < 10000; ++number) {
-    char digits[8];
-    std::snprintf(digits, sizeof digits, "%04d", number);
-    const std::string name = stem + "-" + digits + ".png";
-    std::error_code ignored;
-    if (!std::filesystem::exists(name, ignored)) return name;
-  }
-  throw io_error(stem + "-0001.png", "10,000 pictures of this name exist; move some away");
-}
-
 void App::finish() {
+  if (!options_.screenshot.empty() || options_.print_state) settle();
   if (!options_.screenshot.empty()) {
     for (int i = 0; i < kSettlingDraws; ++i) draw();  // the last frame's figures, settled
     const Picture picture = window_.read_pixels();

@@ -49,7 +49,9 @@ class App {
   void expire_notice();
 
   RenderJob wanted_job() const;
-  void request_picture();
+  enum class Repeat { kNever, kAsChosen };
+  bool request_picture(Repeat repeat);  // whether there was one to ask for
+  void settle();
 
   Layout layout() const;
   PixelRect picture_pixels() const;
@@ -61,7 +63,6 @@ class App {
   void save_picture();
   void save_window();
   void save(const Picture& picture);
-  std::string free_file_name() const;
 
   bool scripted() const { return options_.quit_after > 0; }
   void finish();

@@ -16,7 +16,7 @@ constexpr double kPatience = 60;  // seconds; a busy machine may be slow
 void pause_ms(int ms) { std::this_thread::sleep_for(std::chrono::milliseconds(ms)); }
 
 // Long enough for a slow machine to draw and see what happened before the next event.
-void let_it_draw() { pause_ms(250); }
+void let_it_draw() { pause_ms(200); }
 
 std::string read_text(const std::string& path) {
   std::ifstream in(path);
