@@ -64,15 +64,20 @@ class MarchingTetrahedra {
     std::array<std::size_t, 4> in{}, out{};
     std::size_t ins = 0, outs = 0;
     for (const std::size_t c : t) (inside(c) ? in[ins++] : out[outs++]) = c;
-    if (ins == 1) {
-      add_triangle(cut(in[0], out[0]), cut(in[0], out[1]), cut(in[0], out[2]), in[0], out[0]);
-    } else if (ins == 3) {
-      add_triangle(cut(in[0], out[0]), cut(in[1], out[0]), cut(in[2], out[0]), in[0], out[0]);
-    } else if (ins == 2) {
-      const auto a = cut(in[0], out[0]), b = cut(in[0], out[1]);
-      const auto c = cut(in[1], out[1]), d = cut(in[1], out[0]);
-      add_triangle(a, b, c, in[0], out[0]);
-      add_triangle(a, c, d, in[0], out[0]);
+    // Vertices are numbered as they are made, so each is made in a statement of its own: compilers
+    // are free in the order of arguments.
+    if (ins == 2) {
+      const auto a = cut(in[0], out[0]);
+      const auto b = cut(in[0], out[1]);
+      const auto c = cut(in[1], out[1]);
+      const auto d = cut(in[1], out[0]);
+      add_triangle({a, b, c}, in[0], out[0]);
+      add_triangle({a, c, d}, in[0], out[0]);
+    } else if (ins == 1 || ins == 3) {
+      std::array<std::uint32_t, 3> corners{};
+      for (std::size_t i = 0; i < 3; ++i)
+        corners[i] = ins == 1 ? cut(in[0], out[i]) : cut(in[i], out[0]);
+      add_triangle(corners, in[0], out[0]);
     }
   }
 
@@ -91,8 +96,8 @@ class MarchingTetrahedra {
   }
 
   /// Winds the triangle so that its front looks from the inner corner to the outer one.
-  void add_triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::size_t in,
-                    std::size_t out) {
+  void add_triangle(const std::array<std::uint32_t, 3>& corners, std::size_t in, std::size_t out) {
+    const auto& [a, b, c] = corners;
     const Vec3d pa = mesh_.positions[a];
     const Vec3d normal = cross(mesh_.positions[b] - pa, mesh_.positions[c] - pa);
     const bool front = dot(normal, corner(out) - pa) - dot(normal, corner(in) - pa) > 0;
