@@ -28,7 +28,8 @@ constexpr double kReadUntil = 0.1;
 constexpr double kDecomposeUntil = 0.97;
 
 struct BakeArguments {
-  std::string input, output, report, depfile;
+  std::vector<std::string> inputs;
+  std::string output, report, depfile;
   SourceOptions source;
   std::string mode = "motion";
   std::string clusters = "auto";
@@ -71,12 +72,19 @@ std::uint64_t peak_memory_bytes() {
   return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;  // Linux counts in KiB
 }
 
+/// As on the command line.
+std::string joined_inputs(const BakeArguments& arguments) {
+  std::string text = arguments.inputs.front();
+  for (std::size_t i = 1; i < arguments.inputs.size(); ++i) text += " " + arguments.inputs[i];
+  return text;
+}
+
 void print_notes(const BakeArguments& arguments, const std::vector<std::string>& notes) {
   if (arguments.messages.quiet || notes.empty()) return;
   if (arguments.messages.verbose) {
     for (const std::string& note : notes) std::cerr << "mdprep: note: " << note << "\n";
   } else {
-    std::cerr << "mdprep: " << arguments.input << ": " << notes.size()
+    std::cerr << "mdprep: " << joined_inputs(arguments) << ": " << notes.size()
               << (notes.size() == 1 ? " note" : " notes")
               << " on what was left out; -v shows them\n";
   }
@@ -91,7 +99,7 @@ void print_steps(const std::vector<ClusteringStep>& steps) {
 
 void check_places(const BakeArguments& arguments) {
   const std::string outputs[] = {arguments.output, arguments.report, arguments.depfile};
-  require_distinct_files(arguments.input, outputs);
+  for (const std::string& input : arguments.inputs) require_distinct_files(input, outputs);
   require_writable_place(arguments.output);
   if (!arguments.report.empty()) require_writable_place(arguments.report);
   if (!arguments.depfile.empty()) require_writable_place(arguments.depfile);
@@ -102,14 +110,14 @@ void run_bake(const BakeArguments& arguments) {
   const DecomposeOptions options = parse_decompose_options(arguments);
   parse_source_options(arguments.source);
   ProgressBar progress(std::cerr, progress_style(arguments.messages));
-  require_known_extension(arguments.input);
+  require_known_source(arguments.inputs);
   check_places(arguments);
   defer_interrupts();
 
-  BakeOutcome outcome{arguments.input, arguments.output, {}, 0, 0};
+  BakeOutcome outcome{joined_inputs(arguments), arguments.output, {}, 0, 0};
   Stopwatch total, stage;
   ProgressPart reading(progress, 0, kReadUntil);
-  GltfResult source = read_source(arguments.input, arguments.source, reading);
+  GltfResult source = read_source(arguments.inputs, arguments.source, reading);
   outcome.seconds.read = stage.lap();
 
   ProgressPart decomposing(progress, kReadUntil, kDecomposeUntil);
@@ -163,8 +171,9 @@ void add_decompose_options(CLI::App& command, BakeArguments& arguments) {
 CommandBody add_bake_command(CLI::App& command) {
   const auto arguments = std::make_shared<BakeArguments>();
   command
-      .add_option("INPUT", arguments->input,
-                  "An animated mesh: .gltf or .glb (skins, morph targets, node animation).")
+      .add_option("INPUT", arguments->inputs,
+                  "An animated mesh: .gltf or .glb (skins, morph targets, node animation), or an\n"
+                  ".obj and the point cache that moves it (.pc2 or .mdd).")
       ->required()
       ->type_name("");
   command
@@ -188,7 +197,8 @@ CommandBody add_bake_command(CLI::App& command) {
   command.footer(
       "Example:\n"
       "  mdprep bake hand.glb -o hand.mdk --report hand.json\n"
-      "  mdprep bake fox.glb -o fox.mdk --clips Walk,Run --fps 24 --stop 5");
+      "  mdprep bake fox.glb -o fox.mdk --clips Walk,Run --fps 24 --stop 5\n"
+      "  mdprep bake cow.obj cow.pc2 -o cow.mdk --fps 24");
   return [arguments] { run_bake(*arguments); };
 }
 

@@ -3,8 +3,11 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
+#include <utility>
 
 #include "common/base/error.h"
+#include "formats/obj_reader.h"
+#include "formats/point_cache_reader.h"
 #include "preprocess/cli/number_text.h"
 
 namespace mdk {
@@ -16,8 +19,8 @@ void add_source_options(CLI::App& command, SourceOptions& options) {
       ->type_name("all|NAME,...");
   command
       .add_option("--fps", options.fps,
-                  "Keys per second at which skins, morphs and node tracks are sampled,\n"
-                  "above 0, at most 10000 (default: 30).")
+                  "Keys per second at which skins, morphs and node tracks are sampled, or frames\n"
+                  "per second of a .pc2; above 0, at most 10000 (default: 30).")
       ->type_name("N");
 }
 
@@ -37,21 +40,88 @@ GltfOptions parse_source_options(const SourceOptions& options) {
   return parsed;
 }
 
-void require_known_extension(const std::string& path) {
+namespace {
+
+std::string extension_of(const std::string& path) {
   std::string extension = std::filesystem::path(path).extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(), [](char c) {
     return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
   });
-  if (extension == ".gltf" || extension == ".glb") return;
-  throw bad_input(
-      path, (extension.empty() ? "a name without an extension" : "files that end in " + extension) +
-                " cannot be read, only .gltf and .glb; export the mesh as glTF");
+  return extension;
 }
 
-GltfResult read_source(const std::string& path, const SourceOptions& options,
+bool is_gltf(const std::string& extension) { return extension == ".gltf" || extension == ".glb"; }
+bool is_cache(const std::string& extension) { return extension == ".pc2" || extension == ".mdd"; }
+
+Appearance appearance_of(const ObjMesh& mesh) {
+  Appearance appearance;
+  appearance.materials.emplace_back();
+  appearance.triangle_materials.assign(mesh.triangles.size(), 0);
+  if (mesh.vertex_colors.empty()) return appearance;
+  for (float& channel : appearance.materials.front().base_color) channel = 1;
+  for (const Triangle& triangle : mesh.triangles)
+    for (const std::uint32_t v : triangle.v)
+      appearance.corner_colors.push_back(mesh.vertex_colors[v]);
+  return appearance;
+}
+
+GltfResult read_obj_source(std::span<const std::string> paths, const GltfOptions& options,
+                           ProgressSink& progress) {
+  const std::string name = std::filesystem::path(paths.back()).stem().string();
+  for (const std::string& wanted : options.clips)
+    if (wanted != name)
+      throw Error(ErrorCode::kUsage,
+                  "--clips " + wanted + ": " + paths.back() + " has one clip, \"" + name + "\"");
+  progress.report("read", 0);
+  ObjMesh mesh = read_obj(paths.front());
+  GltfResult result;
+  PoseSequence& sequence = result.sequence;
+  sequence.appearance = appearance_of(mesh);
+  sequence.vertex_count = static_cast<std::uint32_t>(mesh.vertices.size());
+  if (paths.size() == 1) {
+    sequence.key_times = {0};
+    sequence.positions = std::move(mesh.vertices);
+  } else {
+    PointCache cache =
+        read_point_cache(paths.back(), {options.fps, sequence.vertex_count}, progress);
+    sequence.key_times = std::move(cache.key_times);
+    sequence.positions = std::move(cache.positions);
+  }
+  sequence.clips = {{name, 0, sequence.key_count()}};
+  sequence.triangles = std::move(mesh.triangles);
+  weld_vertices(sequence, {});
+  check_consistency(sequence);
+  result.dependencies.assign(paths.begin(), paths.end());
+  result.notes = std::move(mesh.notes);
+  return result;
+}
+
+}  // namespace
+
+void require_known_source(std::span<const std::string> paths) {
+  const std::string& path = paths.front();
+  const std::string extension = extension_of(path);
+  if (is_cache(extension))
+    throw Error(ErrorCode::kUsage,
+                path + ": is a point cache; name the mesh it moves, an .obj, before it");
+  if (!is_gltf(extension) && extension != ".obj")
+    throw bad_input(
+        path,
+        (extension.empty() ? "a name without an extension" : "files that end in " + extension) +
+            " cannot be read, only .gltf, .glb and .obj; export the mesh as glTF");
+  if (paths.size() == 1) return;
+  if (paths.size() > 2 || extension != ".obj" || !is_cache(extension_of(paths[1])))
+    throw Error(ErrorCode::kUsage, paths[1] +
+                                       ": only an .obj takes a second input, the .pc2 or .mdd "
+                                       "point cache that moves it; leave it out");
+}
+
+GltfResult read_source(std::span<const std::string> paths, const SourceOptions& options,
                        ProgressSink& progress) {
-  require_known_extension(path);
-  return read_gltf(path, parse_source_options(options), progress);
+  require_known_source(paths);
+  const GltfOptions parsed = parse_source_options(options);
+  if (is_gltf(extension_of(paths.front()))) return read_gltf(paths.front(), parsed, progress);
+  return read_obj_source(paths, parsed, progress);
 }
 
 }  // namespace mdk

@@ -1,6 +1,7 @@
-// Reads an animated mesh of any kind that is understood, by the extension of its name.
+// Reads an animated mesh of any kind that is understood, by the extensions of its names.
 #pragma once
 
+#include <span>
 #include <string>
 
 #include "common/base/progress.h"
@@ -21,11 +22,15 @@ void add_source_options(CLI::App& command, SourceOptions& options);
 /// Throws Error (kUsage) for a rate out of range or an empty clip name.
 GltfOptions parse_source_options(const SourceOptions& options);
 
-/// Throws Error (kBadInput) naming the extension and what is read; nothing is opened.
-void require_known_extension(const std::string& path);
+/// One file (.gltf, .glb, .obj), or a mesh and the cache that moves it (.obj, then .pc2 or .mdd).
+/// Throws Error, naming what is read: kBadInput for one name that is not, kUsage for names that do
+/// not go together. Nothing is opened.
+void require_known_source(std::span<const std::string> paths);
 
-/// Throws what the format's reader throws.
-GltfResult read_source(const std::string& path, const SourceOptions& options,
+/// An .obj is one clip, named like the cache without its extension; alone, one key. Throws what
+/// require_known_source and the format's reader throw, and Error (kUsage) where --clips names
+/// another clip.
+GltfResult read_source(std::span<const std::string> paths, const SourceOptions& options,
                        ProgressSink& progress);
 
 }  // namespace mdk

@@ -28,7 +28,8 @@ constexpr std::uint32_t kFewestSamples = 200;
 constexpr std::uint32_t kHitMoments = 4;
 
 struct VerifyArguments {
-  std::string input, source_path;
+  std::string input;
+  std::vector<std::string> source_paths;
   std::string samples = "auto";
   std::string seed = "1";
   bool json = false;
@@ -92,10 +93,10 @@ VerifyReport verify_file(const MdkFile& file, const VerifyArguments& arguments,
   for (const CheckResult& result : hit_results) report.hit_mismatches += result.failures;
   report.add(hit_results);
 
-  if (!arguments.source_path.empty()) {
+  if (!arguments.source_paths.empty()) {
     ProgressPart reading(progress, 0.95, 1);
     report.add(check_source(
-        model, read_source(arguments.source_path, arguments.source, reading).sequence));
+        model, read_source(arguments.source_paths, arguments.source, reading).sequence));
   }
   return report;
 }
@@ -137,7 +138,7 @@ void run_verify(const VerifyArguments& arguments) {
   parse_source_options(arguments.source);
   parse_count("--seed", arguments.seed, {0, 0xffffffffu});
   if (arguments.samples != "auto") parse_count("--samples", arguments.samples, kSampleRange);
-  if (!arguments.source_path.empty()) require_known_extension(arguments.source_path);
+  if (!arguments.source_paths.empty()) require_known_source(arguments.source_paths);
   defer_interrupts();
 
   const MdkFile file(arguments.input);
@@ -163,9 +164,11 @@ CommandBody add_verify_command(CLI::App& command) {
       ->type_name("");
   CLI::Option* source =
       command
-          .add_option("--source", arguments->source_path,
+          .add_option("--source", arguments->source_paths,
                       "Read the source again and compare clips, triangles and the position of\n"
-                      "every corner at every key. Give the bake's --clips and --fps, too.")
+                      "every corner at every key. Give the bake's --clips and --fps, too. For an\n"
+                      ".obj and its point cache: --source twice.")
+          ->allow_extra_args(false)
           ->type_name("INPUT");
   add_source_options(command, arguments->source);
   command.get_option("--clips")->needs(source);

@@ -11,6 +11,7 @@
 #include "tests/cli/baked_sample.h"
 #include "tests/cli/program_run.h"
 #include "tests/cli/sample_mesh.h"
+#include "tests/formats/point_cache_builder.h"
 
 namespace mdk::test {
 namespace {
@@ -140,6 +141,60 @@ TEST_F(Bake, StoppedFromTheKeyboardItLeavesNothing) {
   EXPECT_EQ(outcome.status, 130);
   EXPECT_THAT(outcome.err, HasSubstr("mdprep: interrupted"));
   EXPECT_EQ(folder_.names(), (std::vector<std::string>{"long.bin", "long.gltf"}));
+}
+
+/// A square that folds along its diagonal, and a fourth of a second between its frames.
+class BakeCache : public Bake {
+ protected:
+  void SetUp() override {
+    Bake::SetUp();
+    write_text(mesh_, "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n");
+    std::vector<Vec3f> points;
+    for (const float height : {0.f, 0.5f, 1.f}) {
+      const std::vector<Vec3f> pose = {{0, 0, 0}, {1, 0, height}, {1, 1, 0}, {0, 1, 0}};
+      points.insert(points.end(), pose.begin(), pose.end());
+    }
+    const CacheBytes bytes = pc2_bytes(3, points);
+    write_text(cache_, {bytes.begin(), bytes.end()});
+  }
+
+  const std::string mesh_ = folder_.file("fold.obj"), cache_ = folder_.file("wing.pc2");
+  const std::string baked_ = folder_.file("fold.mdk");
+};
+
+TEST_F(BakeCache, AMeshAndItsPointCacheMakeOneClip) {
+  const Outcome bake = run_mdprep({"bake", mesh_, cache_, "-o", baked_, "--fps", "4", "--report",
+                                   folder_.file("r.json"), "--depfile", folder_.file("r.d")});
+  ASSERT_EQ(bake.status, 0) << bake.err;
+  const Json report = Json::parse(read_text(folder_.file("r.json")));
+  EXPECT_EQ(report["input"], mesh_ + " " + cache_);
+  EXPECT_EQ(report["triangles"], 2);
+  EXPECT_EQ(report["clips"], Json::parse(R"([{"name":"wing","seconds":0.5,"keys":3}])"));
+  EXPECT_THAT(read_text(folder_.file("r.d")), HasSubstr(mesh_));
+  EXPECT_THAT(read_text(folder_.file("r.d")), HasSubstr(cache_));
+  const Outcome same =
+      run_mdprep({"verify", baked_, "--source", mesh_, "--source", cache_, "--fps", "4"});
+  EXPECT_EQ(same.status, 0) << same.out << same.err;
+  EXPECT_EQ(run_mdprep({"verify", baked_, "--source", mesh_}).status, 3) << "one key is not three";
+}
+
+TEST_F(BakeCache, AMeshAloneIsOneKey) {
+  ASSERT_EQ(run_mdprep({"bake", mesh_, "-o", baked_, "--report", folder_.file("r.json")}).status,
+            0);
+  EXPECT_EQ(Json::parse(read_text(folder_.file("r.json")))["keys"], 1);
+}
+
+TEST_F(BakeCache, InputsAreNeverOverwritten) {
+  const std::string before = read_text(cache_);
+  EXPECT_EQ(run_mdprep({"bake", mesh_, cache_, "-o", cache_}).status, 2);
+  EXPECT_EQ(read_text(cache_), before);
+}
+
+TEST_F(BakeCache, ClipsAreChosenByTheNameOfTheCache) {
+  EXPECT_EQ(run_mdprep({"bake", mesh_, cache_, "-o", baked_, "--clips", "wing"}).status, 0);
+  const Outcome none = run_mdprep({"bake", mesh_, cache_, "-o", baked_, "--clips", "fold"});
+  EXPECT_EQ(none.status, 2);
+  EXPECT_THAT(none.err, HasSubstr("\"wing\""));
 }
 
 }  // namespace

@@ -69,6 +69,10 @@ TEST_F(CommandLine, WrongUseIsStatus2AndOneSentence) {
       {"bake", source(), "-o", ""},
       {"bake", source(), "-o", out("x.mdk"), "--nonsense"},
       {"bake", source(), "another.glb", "-o", out("x.mdk")},
+      {"bake", source(), "cow.pc2", "-o", out("x.mdk")},
+      {"bake", "cow.obj", "another.obj", "-o", out("x.mdk")},
+      {"bake", "cow.obj", "cow.pc2", "cow.mdd", "-o", out("x.mdk")},
+      {"bake", "cow.pc2", "-o", out("x.mdk")},
       {"bake", source(), "-o", source()},
       {"bake", source(), "-o", out("x.mdk"), "--report", out("x.mdk")},
       {"bake", source(), "-o", out("x.mdk"), "--fps", "0"},
@@ -160,9 +164,9 @@ TEST_F(CommandLine, APictureTooLargeIsStatus5) {
 }
 
 TEST_F(CommandLine, AnUnreadableExtensionIsNamed) {
-  const Outcome run = run_mdprep({"bake", "cow.OBJ", "-o", out("x.mdk")});
+  const Outcome run = run_mdprep({"bake", "cow.STL", "-o", out("x.mdk")});
   EXPECT_EQ(run.status, 3);
-  EXPECT_THAT(run.err, HasSubstr("cow.OBJ: files that end in .obj cannot be read"));
+  EXPECT_THAT(run.err, HasSubstr("cow.STL: files that end in .stl cannot be read"));
 }
 
 TEST_F(CommandLine, AFullDiskUnderStdoutIsNoSuccess) {
