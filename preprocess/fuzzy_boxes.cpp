@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "common/base/parallel.h"
+#include "common/math/affine_path.h"
 
 namespace mdk {
 namespace {
@@ -16,7 +17,7 @@ constexpr std::uint32_t kSlotsPerChunk = 512;
 constexpr double kFloatRounding = 0x1.01p-24;
 /// Rounding of the maps' interpolation and of these computations, relative to |A| |v|; generous,
 /// since it is nothing beside float's.
-constexpr double kDoubleRounding = 0x1p-40;
+constexpr double kDoubleRounding = 0x1p-30;
 constexpr double kSmallest = std::numeric_limits<float>::denorm_min();
 
 /// Largest error of one coordinate of a vertex that is interpolated in float.
@@ -47,29 +48,91 @@ void extend_padded(Aabbd& box, const Vec3d& p, const Vec3d& pad) {
   box.extend(p + pad);
 }
 
-/// The value at which a quadratic through p0 and p2 with middle control value p1 turns, or p0 where
-/// it does not turn in between.
-double turning_value(double p0, double p1, double p2) {
-  const double bend = (p0 - p1) + (p2 - p1);
-  const double s = bend != 0 ? (p0 - p1) / bend : 0;
-  return s > 0 && s < 1 ? p0 + s * (2 * (p1 - p0) + s * bend) : p0;
+/// |entries| of the linear part of `a`, kept where they are larger than before.
+void raise_sizes(Affine3d& sizes, const Affine3d& a, double factor) {
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 4; ++j)
+      sizes.m[i][j] = std::max(sizes.m[i][j], std::abs(a.m[i][j]) * factor);
 }
 
-Vec3d turning_point(const Vec3d& p0, const Vec3d& p1, const Vec3d& p2) {
-  return {turning_value(p0.x, p1.x, p2.x), turning_value(p0.y, p1.y, p2.y),
-          turning_value(p0.z, p1.z, p2.z)};
+Affine3d zero_map() {
+  Affine3d a;
+  for (auto& row : a.m) std::fill(row, row + 4, 0.0);
+  return a;
 }
 
-/// A cluster's maps at two keys of a clip and half-way.
-struct MapInterval {
-  Affine3d at0, half, at1;
-  Affine3d sizes;  ///< no entry of any map in between is larger
+/// a + b f, entry by entry
+void add_scaled(Affine3d& a, const Affine3d& b, double f) {
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 4; ++j) a.m[i][j] += b.m[i][j] * f;
+}
 
-  MapInterval(const Affine3f& map0, const Affine3f& map1)
-      : at0(to_double(map0)),
-        half(interpolate(map0, map1, 0.5f)),
-        at1(to_double(map1)),
-        sizes(largest_entries(at0, at1)) {}
+/// u -> (det(u, y, z), det(x, u, z), det(x, y, u)) for u = v - origin, where in each determinant
+/// the two remaining columns come one from `a` and one from `b`, both ways added.
+Affine3d cramer_map(const Affine3d& a, const Affine3d& b, const Vec3d& origin) {
+  Affine3d r;
+  for (int i = 0; i < 3; ++i) {
+    const int j = (i + 1) % 3, k = (i + 2) % 3;
+    const Vec3d row = cross(a.column(j), b.column(k)) + cross(b.column(j), a.column(k));
+    r.m[i][0] = row.x;
+    r.m[i][1] = row.y;
+    r.m[i][2] = row.z;
+    r.m[i][3] = -dot(row, origin);
+  }
+  return r;
+}
+
+/// The four control points of a piece of an interval as functions of a vertex's positions at the
+/// piece's ends: from0[i] v0 + from1[i] v1.
+struct ControlMaps {
+  Affine3d from0[4], from1[4];
+  Affine3d sizes = zero_map();  ///< no entry of any map in between is larger
+
+  /// The inverse of mix(x0, x1, s), s in [0, 1].
+  static ControlMaps of_inverse(const Affine3d& x0, const Affine3d& x1) {
+    const DeterminantBounds bounds(x0, x1);
+    const Vec3d o0 = x0.column(3), o1 = x1.column(3);
+    ControlMaps maps;
+    maps.clear();
+    add_scaled(maps.from0[0], cramer_map(x0, x0, o0), 0.5 / bounds.d[0]);
+    add_scaled(maps.from0[1], cramer_map(x0, x1, o0), 1 / (3 * bounds.d[1]));
+    add_scaled(maps.from1[1], cramer_map(x0, x0, o1), 0.5 / (3 * bounds.d[1]));
+    add_scaled(maps.from0[2], cramer_map(x1, x1, o0), 0.5 / (3 * bounds.d[2]));
+    add_scaled(maps.from1[2], cramer_map(x0, x1, o1), 1 / (3 * bounds.d[2]));
+    add_scaled(maps.from1[3], cramer_map(x1, x1, o1), 0.5 / bounds.d[3]);
+    // The inverse is the adjugate over the determinant; both lie in the hull of their coefficients.
+    const double least = std::min(std::abs(bounds.least()), std::abs(bounds.most()));
+    for (const Vec3d& o : {o0, o1}) {
+      raise_sizes(maps.sizes, cramer_map(x0, x0, o), 0.5 / least);
+      raise_sizes(maps.sizes, cramer_map(x0, x1, o), 0.5 / least);
+      raise_sizes(maps.sizes, cramer_map(x1, x1, o), 0.5 / least);
+    }
+    return maps;
+  }
+
+  /// A curve that is quadratic: its middle control point, q = 2 p(1/2) - (p(0) + p(1)) / 2, follows
+  /// from the map half-way, and (p(0) + 2 q) / 3, (2 q + p(1)) / 3 are those of the same curve as a
+  /// cubic.
+  static ControlMaps of_quadratic(const AffinePath& path) {
+    const Affine3d half = path.at(0.5f);
+    ControlMaps maps;
+    maps.clear();
+    add_scaled(maps.from0[0], path.from(), 1);
+    add_scaled(maps.from0[1], half, 2.0 / 3);
+    add_scaled(maps.from1[1], half, 2.0 / 3);
+    add_scaled(maps.from1[1], path.to(), -1.0 / 3);
+    add_scaled(maps.from0[2], half, 2.0 / 3);
+    add_scaled(maps.from0[2], path.from(), -1.0 / 3);
+    add_scaled(maps.from1[2], half, 2.0 / 3);
+    add_scaled(maps.from1[3], path.to(), 1);
+    for (const Affine3d& a : {path.from(), half, path.to()}) raise_sizes(maps.sizes, a, 1);
+    return maps;
+  }
+
+ private:
+  void clear() {
+    for (int i = 0; i < 4; ++i) from0[i] = from1[i] = zero_map();
+  }
 };
 
 /// Boxes of some vertices of one cluster, grown key by key.
@@ -89,20 +152,35 @@ class SlotBoxes {
 
   /// All times from one key to the next.
   void add_interval(std::span<const Vec3f> pose0, std::span<const Vec3f> pose1,
-                    const MapInterval& maps) {
-    for (std::size_t i = 0; i < vertices_.size(); ++i) {
-      const Vec3d v0 = to_double(pose0[vertices_[i]]), v1 = to_double(pose1[vertices_[i]]);
-      const Vec3d p0 = maps.at0.point(v0), p2 = maps.at1.point(v1);
-      const Vec3d p1 = maps.half.point((v0 + v1) * 0.5) * 2.0 - (p0 + p2) * 0.5;
-      const Vec3d pad = maps.sizes.vector(lerp_error(v0, v1)) +
-                        maps.sizes.point(largest_sizes(v0, v1)) * kDoubleRounding;
-      extend_padded(boxes_[i], p0, pad);
-      extend_padded(boxes_[i], turning_point(p0, p1, p2), pad);
-      extend_padded(boxes_[i], p2, pad);
+                    const AffinePath& path) {
+    const int pieces = path.rational_pieces();
+    if (pieces == 0) add_piece(pose0, pose1, {0, 1}, ControlMaps::of_quadratic(path));
+    for (int i = 0; i < pieces; ++i) {
+      const double begin = static_cast<double>(i) / pieces,
+                   end = static_cast<double>(i + 1) / pieces;
+      add_piece(pose0, pose1, {begin, end},
+                ControlMaps::of_inverse(mix(path.inverse_from(), path.inverse_to(), begin),
+                                        mix(path.inverse_from(), path.inverse_to(), end)));
     }
   }
 
  private:
+  struct Piece {
+    double begin, end;  ///< of the interval, in [0, 1]
+  };
+
+  void add_piece(std::span<const Vec3f> pose0, std::span<const Vec3f> pose1, const Piece& piece,
+                 const ControlMaps& maps) {
+    for (std::size_t i = 0; i < vertices_.size(); ++i) {
+      const Vec3d v0 = to_double(pose0[vertices_[i]]), v1 = to_double(pose1[vertices_[i]]);
+      const Vec3d pad = maps.sizes.vector(lerp_error(v0, v1)) +
+                        maps.sizes.point(largest_sizes(v0, v1)) * kDoubleRounding;
+      const Vec3d begin = v0 + (v1 - v0) * piece.begin, end = v0 + (v1 - v0) * piece.end;
+      for (int k = 0; k < 4; ++k)
+        extend_padded(boxes_[i], maps.from0[k].point(begin) + maps.from1[k].point(end), pad);
+    }
+  }
+
   std::span<const std::uint32_t> vertices_;
   std::span<Aabbd> boxes_;
 };
@@ -131,7 +209,7 @@ void fill_run(const PoseSequence& sequence, std::span<const Affine3f> local_from
     for (std::uint32_t key = clip.first_key + 1; key < clip.first_key + clip.key_count; ++key) {
       if (between == BetweenKeys::kBound)
         boxes.add_interval(sequence.pose(key - 1), sequence.pose(key),
-                           {map_at(key - 1), map_at(key)});
+                           AffinePath(map_at(key - 1), map_at(key)));
       else
         boxes.add_key(sequence.pose(key), to_double(map_at(key)));
     }

@@ -1,13 +1,16 @@
 // Fuzzy boxes that hold at every real time (docs/method.md, time between keys).
 //
-// Between two keys both a vertex and its cluster's map move so that the local position
-// A(s) (v0 + s (v1 - v0)) is a quadratic in s: a Bezier curve whose ends are the positions at the
-// keys and whose middle control point follows from the position half-way,
+// Between two keys a vertex moves linearly, v(s) = v0 + s (v1 - v0), and its cluster's map is the
+// inverse of X(s) = X0 + s (X1 - X0) (common/math/affine_path.h). By Cramer's rule each local
+// coordinate is a quotient of cubics in s, for x:
 //
-//     p1 = 2 p(1/2) - (p0 + p2) / 2,        p(1/2) = interpolate(A0, A1, 1/2) (v0 + v1) / 2.
+//     det(v(s) - o(s), y(s), z(s)) / det(x(s), y(s), z(s)),   X = (x y z | o).
 //
-// A box over the ends and over the curve's turning point on each axis is the curve's exact box; its
-// control points would do too, but where clusters turn fast between keys they double the excess.
+// With Bernstein coefficients n_k above and d_k below, all d_k of one sign, it is a convex
+// combination of the four n_k / d_k: a box over these control points of all intervals holds the
+// curve. A vertex that obeys its cluster exactly has all four in one place. Where the map itself is
+// interpolated, the curve is a quadratic, which has four such control points, too.
+//
 // What tracing really computes differs a little: it rounds v0 + s (v1 - v0) to float. Three
 // roundings (difference, product, sum) err by at most 2^-24 (2 |v1 - v0| + max |v|) per world
 // coordinate; mapped through |A| that is added on all sides.

@@ -56,15 +56,19 @@ Affine3<T> operator*(const Affine3<T>& a, const Affine3<T>& b) {
   return r;
 }
 
-/// Entry by entry, in double: a + s (b - a). What the fuzzy boxes bound and what tracing uses must
-/// be this one formula (docs/method.md, time between keys).
-inline Affine3d interpolate(const Affine3f& a, const Affine3f& b, float s) {
+/// The map that undoes `a`, whose determinant must not be zero.
+inline Affine3d inverse(const Affine3d& a) {
+  const double scale = 1 / a.determinant();
+  const Vec3d rows[3] = {cross(a.column(1), a.column(2)) * scale,
+                         cross(a.column(2), a.column(0)) * scale,
+                         cross(a.column(0), a.column(1)) * scale};
   Affine3d r;
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 4; ++j) {
-      const double from = a.m[i][j];
-      r.m[i][j] = from + static_cast<double>(s) * (static_cast<double>(b.m[i][j]) - from);
-    }
+  for (int i = 0; i < 3; ++i) {
+    r.m[i][0] = rows[i].x;
+    r.m[i][1] = rows[i].y;
+    r.m[i][2] = rows[i].z;
+    r.m[i][3] = -dot(rows[i], a.column(3));
+  }
   return r;
 }
 

@@ -4,6 +4,7 @@
 #include <random>
 
 #include "common/base/parallel.h"
+#include "common/math/affine_path.h"
 #include "common/motion/posed_mesh.h"
 #include "preprocess/cli/number_text.h"
 

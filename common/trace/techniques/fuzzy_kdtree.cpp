@@ -3,6 +3,7 @@
 // rays.
 #include <vector>
 
+#include "common/math/affine_path.h"
 #include "common/structures/kd_tree_builder.h"
 #include "common/trace/techniques/makers.h"
 
