@@ -20,7 +20,7 @@ static_assert(std::endian::native == std::endian::little,
 inline constexpr std::array<unsigned char, 8> kMagic = {0x89, 'M',  'D',  'K',
                                                         '\r', '\n', 0x1a, '\n'};
 inline constexpr std::uint32_t kByteOrder = 0x01020304;
-inline constexpr std::uint16_t kMajorVersion = 1;
+inline constexpr std::uint16_t kMajorVersion = 2;
 inline constexpr std::uint16_t kMinorVersion = 0;
 inline constexpr std::uint64_t kAlignment = 64;
 inline constexpr std::uint32_t kMaxSections = 256;
@@ -57,7 +57,7 @@ struct ModelRecord {
   std::uint32_t vertex_count = 0, key_count = 0, triangle_count = 0, cluster_count = 0;
   std::uint32_t clip_count = 0, rest_key = 0;
   std::uint32_t pose_kind = kPoseKindKeyPositions;
-  std::uint32_t reserved = 0;
+  std::uint32_t segment_count = 0;
   double rest_diagonal = 0;
   Aabb bounds;
 };
@@ -73,7 +73,8 @@ static_assert(sizeof(Aabb) == 24 && sizeof(Affine3f) == 48 && sizeof(Vec3f) == 1
 static_assert(sizeof(Triangle) == 12 && sizeof(TexCoord) == 8 && sizeof(KdNode) == 8);
 static_assert(sizeof(Material) == 32 && offsetof(Material, texture) == 16);
 static_assert(sizeof(Texture) == 16 && offsetof(Texture, first_texel) == 8);
-static_assert(sizeof(Cluster) == 64 && offsetof(Cluster, local_box) == 24);
+static_assert(sizeof(Cluster) == 8 && sizeof(Segment) == 8);
+static_assert(sizeof(FuzzyTree) == 40 && offsetof(FuzzyTree, local_box) == 16);
 
 struct SectionKind {
   std::uint32_t id = 0;
@@ -94,6 +95,8 @@ inline constexpr SectionKind kClips{fourcc("CLIP"), "clips"};
 inline constexpr SectionKind kClipNames{fourcc("NAME"), "clip_names"};
 inline constexpr SectionKind kKeyTimes{fourcc("TIME"), "key_times"};
 inline constexpr SectionKind kClusters{fourcc("CLUS"), "clusters"};
+inline constexpr SectionKind kSegments{fourcc("SEGM"), "segments"};
+inline constexpr SectionKind kFuzzyTrees{fourcc("FTRE"), "fuzzy_trees"};
 inline constexpr SectionKind kKdNodes{fourcc("NODE"), "kd_nodes"};
 inline constexpr SectionKind kKdRefs{fourcc("REFS"), "kd_refs"};
 inline constexpr SectionKind kTriangles{fourcc("TRIS"), "triangles"};
@@ -116,6 +119,8 @@ template <class ModelRef, class Visit>
 void for_each_array(ModelRef&& model, Visit&& visit) {
   visit(kKeyTimes, model.key_times);
   visit(kClusters, model.clusters);
+  visit(kSegments, model.segments);
+  visit(kFuzzyTrees, model.fuzzy_trees);
   visit(kKdNodes, model.kd_nodes);
   visit(kKdRefs, model.kd_refs);
   visit(kTriangles, model.triangles);

@@ -51,7 +51,8 @@ std::vector<Clip> read_clips(const MdkSections& sections, const std::string& pat
 bool counts_agree(const ModelRecord& record, const Model& model) {
   return record.key_count == model.key_times.size() &&
          record.triangle_count == model.triangles.size() &&
-         record.cluster_count == model.clusters.size() && record.clip_count == model.clips.size();
+         record.cluster_count == model.clusters.size() &&
+         record.segment_count == model.segments.size() && record.clip_count == model.clips.size();
 }
 
 }  // namespace

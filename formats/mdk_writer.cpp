@@ -33,7 +33,6 @@ struct Records {
   ModelRecord model;
   std::vector<ClipRecord> clips;
   std::string clip_names;
-  std::vector<Cluster> clusters;  ///< reserved fields zeroed
 };
 
 Records make_records(const Model& model) {
@@ -43,6 +42,7 @@ Records make_records(const Model& model) {
   r.key_count = model.key_count();
   r.triangle_count = model.triangle_count();
   r.cluster_count = model.cluster_count();
+  r.segment_count = model.segment_count();
   r.clip_count = static_cast<std::uint32_t>(model.clips.size());
   r.rest_key = model.rest_key;
   r.rest_diagonal = model.rest_diagonal;
@@ -52,10 +52,6 @@ Records make_records(const Model& model) {
                              static_cast<std::uint32_t>(clip.name.size()), clip.first_key,
                              clip.key_count});
     records.clip_names += clip.name;
-  }
-  records.clusters.assign(model.clusters.begin(), model.clusters.end());
-  for (Cluster& cluster : records.clusters) {
-    for (std::uint32_t& word : cluster.reserved) word = 0;
   }
   return records;
 }
@@ -77,9 +73,7 @@ std::vector<Section> make_sections(const Model& model, const Records& records) {
   sections.push_back(make_section(layout::kModel, std::span(&records.model, 1)));
   sections.push_back(make_section(layout::kClips, std::span(records.clips)));
   sections.push_back(make_section(layout::kClipNames, std::span(records.clip_names)));
-  Model written = model;
-  written.clusters = records.clusters;
-  layout::for_each_array(written, [&](const SectionKind& kind, auto elements) {
+  layout::for_each_array(model, [&](const SectionKind& kind, auto elements) {
     sections.push_back(make_section(kind, elements));
   });
   return sections;

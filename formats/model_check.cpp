@@ -69,11 +69,13 @@ bool is_utf8(const std::string& text) {
 std::string check_counts(const Model& m) {
   const std::uint64_t vertices = m.vertex_count, keys = m.key_times.size();
   const std::uint64_t triangles = m.triangles.size(), clusters = m.clusters.size();
+  const std::uint64_t segments = m.segments.size();
   const std::string ranges[] = {
       range_fault("vertices", vertices, 1, kMaxCount),
       range_fault("key_times", keys, 1, kMaxCount),
       range_fault("triangles", triangles, 1, kMaxCount),
       range_fault("clusters", clusters, 1, kMaxCount),
+      range_fault("segments", segments, 1, keys),
       range_fault("clips", m.clips.size(), 1, kMaxCount),
       range_fault("materials", m.materials.size(), 1, kMaxCount),
       range_fault("textures", m.textures.size(), 0, kMaxCount),
@@ -89,7 +91,8 @@ std::string check_counts(const Model& m) {
       count_fault("source_triangles", m.source_triangles.size(), triangles),
       count_fault("local_from_world", m.local_from_world.size(), keys * clusters),
       count_fault("cluster_world_boxes", m.cluster_world_boxes.size(), keys * clusters),
-      count_fault("fuzzy_boxes", m.fuzzy_boxes.size(), triangles),
+      count_fault("fuzzy_trees", m.fuzzy_trees.size(), segments * clusters),
+      count_fault("fuzzy_boxes", m.fuzzy_boxes.size(), segments * triangles),
       count_fault("triangle_materials", m.triangle_materials.size(), triangles),
       count_fault("corner_texcoords", m.corner_texcoords.size(),
                   per_corner(m.corner_texcoords.size())),
@@ -156,14 +159,32 @@ std::string check_triangles(const Model& m) {
   return {};
 }
 
-/// A list that clusters cut into consecutive runs.
+std::string check_segments(const Model& m) {
+  std::uint64_t next_first = 0;
+  for (std::size_t i = 0; i < m.segments.size(); ++i) {
+    const Segment& segment = m.segments[i];
+    const std::string name = "segments: segment " + number(i);
+    if (segment.first_key != next_first) return name + " does not start where the last one ended";
+    const bool on = i == 0 ? segment.last_key >= segment.first_key
+                           : segment.last_key > m.segments[i - 1].last_key;
+    if (!on) return name + " does not reach past the last one's end";
+    if (segment.last_key >= m.key_times.size()) return name + " reaches past the last key";
+    const Clip& clip = m.clips[clip_of_key(m, segment.last_key)];
+    const bool ends_clip = segment.last_key + 1 == clip.first_key + clip.key_count;
+    next_first = segment.last_key + (ends_clip ? 1 : 0);
+  }
+  if (next_first != m.key_times.size()) return "segments: they do not cover every key";
+  return {};
+}
+
+/// A list that others cut into consecutive runs.
 struct Partition {
   const char* what;
   std::uint64_t size;
   std::uint64_t next = 0;
 
   std::string take(std::uint64_t first, std::uint64_t count) {
-    if (first != next) return std::string(what) + " do not start where the last cluster's ended";
+    if (first != next) return std::string(what) + " do not start where the last one's ended";
     if (count > size - next) return std::string(what) + " reach past the end of their list";
     next += count;
     return {};
@@ -172,31 +193,46 @@ struct Partition {
 
 std::string check_clusters(const Model& m) {
   Partition triangles{"triangles", m.triangles.size()};
-  Partition nodes{"nodes", m.kd_nodes.size()};
-  Partition refs{"references", m.kd_refs.size()};
   for (std::size_t i = 0; i < m.clusters.size(); ++i) {
     const Cluster& c = m.clusters[i];
     const std::string name = "clusters: cluster " + number(i);
     if (c.triangle_count == 0) return name + " has no triangles";
-    if (c.node_count == 0) return name + " has no tree";
-    if (!is_box(c.local_box)) return name + " has a local box that is not a finite box";
-    for (const std::string& fault :
-         {triangles.take(c.first_triangle, c.triangle_count),
-          nodes.take(c.first_node, c.node_count), refs.take(c.first_ref, c.ref_count)}) {
+    if (const std::string fault = triangles.take(c.first_triangle, c.triangle_count);
+        !fault.empty()) {
+      return name + ": its " + fault;
+    }
+  }
+  if (triangles.next != triangles.size) return "clusters: some triangles are in none";
+  return {};
+}
+
+std::string check_tree_ranges(const Model& m) {
+  Partition nodes{"nodes", m.kd_nodes.size()};
+  Partition refs{"references", m.kd_refs.size()};
+  for (std::size_t i = 0; i < m.fuzzy_trees.size(); ++i) {
+    const FuzzyTree& tree = m.fuzzy_trees[i];
+    const std::string name = "fuzzy_trees: tree " + number(i);
+    if (tree.node_count == 0) return name + " is empty";
+    if (!is_box(tree.local_box)) return name + " has a local box that is not a finite box";
+    for (const std::string& fault : {nodes.take(tree.first_node, tree.node_count),
+                                     refs.take(tree.first_ref, tree.ref_count)}) {
       if (!fault.empty()) return name + ": its " + fault;
     }
   }
-  for (const Partition& list : {triangles, nodes, refs}) {
-    if (list.next != list.size) return "clusters: some " + std::string(list.what) + " are in none";
+  for (const Partition& list : {nodes, refs}) {
+    if (list.next != list.size) {
+      return "fuzzy_trees: some " + std::string(list.what) + " are in none";
+    }
   }
   return {};
 }
 
 std::string check_trees(const Model& m) {
-  for (std::size_t i = 0; i < m.clusters.size(); ++i) {
-    const Cluster& c = m.clusters[i];
-    if (!is_well_formed(m.fuzzy_tree(c), c.first_triangle, c.first_triangle + c.triangle_count)) {
-      return "kd_nodes: the tree of cluster " + number(i) + " is malformed";
+  for (std::size_t i = 0; i < m.fuzzy_trees.size(); ++i) {
+    const Cluster& c = m.clusters[i % m.clusters.size()];
+    if (!is_well_formed(m.tree_view(m.fuzzy_trees[i]), c.first_triangle,
+                        c.first_triangle + c.triangle_count)) {
+      return "kd_nodes: tree " + number(i) + " is malformed";
     }
   }
   return {};
@@ -271,8 +307,8 @@ std::string check_textures(const Model& m) {
 
 std::string find_inconsistency(const Model& model) {
   for (const auto check :
-       {check_counts, check_scalars, check_clips, check_triangles, check_clusters, check_trees,
-        check_boxes_and_maps, check_materials, check_textures}) {
+       {check_counts, check_scalars, check_clips, check_segments, check_triangles, check_clusters,
+        check_tree_ranges, check_trees, check_boxes_and_maps, check_materials, check_textures}) {
     if (std::string fault = check(model); !fault.empty()) return fault;
   }
   return {};

@@ -36,6 +36,23 @@ double winsorised_mean(std::span<const double> values, double outlier);
 AreaWeights mean_area_weights(std::span<const Affine3d> maps, std::span<const double> model_areas,
                               const CostOptions& options);
 
+/// Area weights of all clusters, averaged over any run of keys in O(1). Over all keys they are
+/// those of mean_area_weights: a run's outliers are judged by the median over all keys, too, so
+/// that short runs next to a singular map are not mistaken for dear ones.
+class AreaWeightTable {
+ public:
+  /// `local_from_world`: F * K, key-major. `model_areas`: F; keys without area are left out.
+  AreaWeightTable(std::span<const Affine3f> local_from_world, std::span<const double> model_areas,
+                  const CostOptions& options);
+  /// Mean over first_key..last_key, both inclusive; plain areas where no such key has any.
+  AreaWeights mean(std::size_t cluster, std::uint32_t first_key, std::uint32_t last_key) const;
+
+ private:
+  std::size_t keys_, clusters_;
+  std::vector<AreaWeights> sums_;      ///< K * (F + 1): over the keys before
+  std::vector<std::uint32_t> counts_;  ///< F + 1
+};
+
 /// Sums over boxes of the products of their extents, so that any weights give the summed area.
 struct FaceSums {
   double xy = 0, yz = 0, zx = 0;

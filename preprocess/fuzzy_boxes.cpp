@@ -199,15 +199,34 @@ std::vector<SlotRun> split_slots(const ClusterMembers& members) {
   return runs;
 }
 
-void fill_run(const PoseSequence& sequence, std::span<const Affine3f> local_from_world,
-              std::size_t clusters, const SlotRun& run, BetweenKeys between, SlotBoxes boxes) {
+/// What the boxes of one segment are made from.
+struct Motion {
+  const PoseSequence& sequence;
+  std::span<const Affine3f> local_from_world;
+  std::size_t clusters;
+  std::vector<Clip> clips;  ///< the parts of the clips that lie in the segment
+  BetweenKeys between;
+};
+
+std::vector<Clip> clips_within(std::span<const Clip> clips, const Segment& keys) {
+  std::vector<Clip> parts;
+  for (const Clip& clip : clips) {
+    const std::uint32_t first = std::max(clip.first_key, keys.first_key);
+    const std::uint32_t last = std::min(clip.first_key + clip.key_count - 1, keys.last_key);
+    if (first <= last) parts.push_back({{}, first, last - first + 1});
+  }
+  return parts;
+}
+
+void fill_run(const Motion& motion, const SlotRun& run, SlotBoxes boxes) {
+  const PoseSequence& sequence = motion.sequence;
   const auto map_at = [&](std::uint32_t key) -> const Affine3f& {
-    return local_from_world[key * clusters + run.cluster];
+    return motion.local_from_world[key * motion.clusters + run.cluster];
   };
-  for (const Clip& clip : sequence.clips) {
+  for (const Clip& clip : motion.clips) {
     boxes.add_key(sequence.pose(clip.first_key), to_double(map_at(clip.first_key)));
     for (std::uint32_t key = clip.first_key + 1; key < clip.first_key + clip.key_count; ++key) {
-      if (between == BetweenKeys::kBound)
+      if (motion.between == BetweenKeys::kBound)
         boxes.add_interval(sequence.pose(key - 1), sequence.pose(key),
                            AffinePath(map_at(key - 1), map_at(key)));
       else
@@ -239,12 +258,15 @@ WorldExtent world_extent(const PoseSequence& sequence, std::span<const std::uint
 }  // namespace
 
 std::vector<Aabb> fuzzy_boxes(const PoseSequence& sequence, const ClusterMembers& members,
-                              std::span<const Affine3f> local_from_world, BetweenKeys between) {
+                              std::span<const Affine3f> local_from_world, const Segment& keys,
+                              BetweenKeys between) {
+  const Motion motion{sequence, local_from_world, members.cluster_count(),
+                      clips_within(sequence.clips, keys), between};
   std::vector<Aabbd> slots(members.vertices.size());
   const std::vector<SlotRun> runs = split_slots(members);
   parallel_chunks(runs.size(), 1, [&](std::size_t i, std::size_t) {
     const std::size_t count = runs[i].end - runs[i].begin;
-    fill_run(sequence, local_from_world, members.cluster_count(), runs[i], between,
+    fill_run(motion, runs[i],
              {std::span(members.vertices).subspan(runs[i].begin, count),
               std::span(slots).subspan(runs[i].begin, count)});
   });

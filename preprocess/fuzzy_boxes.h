@@ -22,6 +22,7 @@
 
 #include "common/math/aabb.h"
 #include "common/math/affine3.h"
+#include "common/motion/model.h"
 #include "common/motion/pose_sequence.h"
 #include "preprocess/cluster_members.h"
 
@@ -33,11 +34,11 @@ enum class BetweenKeys {
   kIgnore,  ///< boxes hold at keys only: what GFW06 has, and what tests compare with
 };
 
-/// Per triangle, in the order of `members.triangles`: its box in its cluster's local basis.
-/// `local_from_world`: F * K as stored, key-major. Computed in double, rounded outward.
-/// Cost: O(keys * vertices); runs in parallel.
+/// Per triangle, in the order of `members.triangles`: its box in its cluster's local basis at all
+/// times of a segment. `local_from_world`: F * K as stored, key-major. Computed in double, rounded
+/// outward. Cost: O(keys of the segment * vertices); runs in parallel.
 std::vector<Aabb> fuzzy_boxes(const PoseSequence& sequence, const ClusterMembers& members,
-                              std::span<const Affine3f> local_from_world,
+                              std::span<const Affine3f> local_from_world, const Segment& keys,
                               BetweenKeys between = BetweenKeys::kBound);
 
 /// Per key and cluster (F * K, key-major): world boxes whose linear interpolation between keys of a

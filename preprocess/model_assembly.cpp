@@ -3,12 +3,16 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <span>
 #include <utility>
 
+#include "common/base/error.h"
 #include "common/base/parallel.h"
 #include "common/structures/kd_tree_builder.h"
+#include "preprocess/cost.h"
 #include "preprocess/fuzzy_boxes.h"
+#include "preprocess/segments.h"
 
 namespace mdk {
 namespace {
@@ -29,30 +33,28 @@ void permute(std::vector<T>& items, std::span<const std::uint32_t> sources,
   items = std::move(sorted);
 }
 
-Aabbd pose_box(const PoseSequence& sequence, std::uint32_t key) {
-  Aabbd box;
-  for (const Vec3f& v : sequence.pose(key)) box.extend(to_double(v));
-  return box;
+std::span<const Aabb> boxes_of(const ModelStorage& model, std::uint32_t segment,
+                               const Cluster& cluster) {
+  const std::size_t first = segment * model.triangles.size() + cluster.first_triangle;
+  return std::span(model.fuzzy_boxes).subspan(first, cluster.triangle_count);
 }
 
-/// What the cost needs to know about one cluster of the finished model.
-ClusterWork cluster_work(const ModelStorage& model, std::size_t cluster,
-                         std::span<const double> model_areas) {
-  const std::size_t clusters = model.clusters.size();
-  std::vector<Affine3d> maps;
-  double met = 0, keys = 0;
-  for (std::size_t key = 0; key < model_areas.size(); ++key) {
-    maps.push_back(to_double(model.local_from_world[key * clusters + cluster]));
+/// What the cost needs to know about one cluster of the finished model in one segment.
+ClusterWork cluster_work(const ModelStorage& model, std::uint32_t segment, std::size_t cluster,
+                         const AreaWeightTable& weights, std::span<const double> model_areas) {
+  const Segment& keys = model.segments[segment];
+  double met = 0, counted = 0;
+  for (std::size_t key = keys.first_key; key <= keys.last_key; ++key) {
     if (!(model_areas[key] > 0)) continue;
-    met += model.cluster_world_boxes[key * clusters + cluster].surface_area() / model_areas[key];
-    keys += 1;
+    met += model.cluster_world_boxes[key * model.clusters.size() + cluster].surface_area() /
+           model_areas[key];
+    counted += 1;
   }
   ClusterWork work;
-  work.weights = mean_area_weights(maps, model_areas, {});
-  work.hit_probability = keys > 0 ? met / keys : 1;
+  work.weights = weights.mean(cluster, keys.first_key, keys.last_key);
+  work.hit_probability = counted > 0 ? met / counted : 1;
   const Cluster& c = model.clusters[cluster];
-  for (const Aabb& box : std::span(model.fuzzy_boxes).subspan(c.first_triangle, c.triangle_count))
-    work.fuzzy_boxes.add(box);
+  for (const Aabb& box : boxes_of(model, segment, c)) work.fuzzy_boxes.add(box);
   return work;
 }
 
@@ -63,67 +65,91 @@ AreaWeights tree_weights(const AreaWeights& w) {
   return {w.xy / largest, w.yz / largest, w.zx / largest};
 }
 
+/// `work`: S * K, segment-major.
 void build_fuzzy_trees(ModelStorage& model, std::span<const ClusterWork> work,
                        ProgressSink& progress) {
-  std::vector<KdTree> trees(model.clusters.size());
-  parallel_chunks(trees.size(), 1, [&](std::size_t c, std::size_t) {
-    const Cluster& cluster = model.clusters[c];
+  const std::size_t clusters = model.clusters.size();
+  std::vector<KdTree> trees(work.size());
+  parallel_chunks(trees.size(), 1, [&](std::size_t i, std::size_t) {
+    const Cluster& cluster = model.clusters[i % clusters];
     KdBuildConfig config;
-    config.area = tree_weights(work[c].weights);
+    config.area = tree_weights(work[i].weights);
     config.intersect_cost = kTestCost;
-    trees[c] = build_kd_tree(
-        std::span(model.fuzzy_boxes).subspan(cluster.first_triangle, cluster.triangle_count),
-        cluster.first_triangle, config);
+    trees[i] = build_kd_tree(boxes_of(model, static_cast<std::uint32_t>(i / clusters), cluster),
+                             cluster.first_triangle, config);
   });
   progress.report("build", 0.9);
-  for (std::size_t c = 0; c < trees.size(); ++c) {
-    Cluster& cluster = model.clusters[c];
-    cluster.first_node = static_cast<std::uint32_t>(model.kd_nodes.size());
-    cluster.node_count = static_cast<std::uint32_t>(trees[c].nodes.size());
-    cluster.first_ref = static_cast<std::uint32_t>(model.kd_refs.size());
-    cluster.ref_count = static_cast<std::uint32_t>(trees[c].refs.size());
-    model.kd_nodes.insert(model.kd_nodes.end(), trees[c].nodes.begin(), trees[c].nodes.end());
-    model.kd_refs.insert(model.kd_refs.end(), trees[c].refs.begin(), trees[c].refs.end());
+  constexpr std::size_t kMostLinks = std::numeric_limits<std::uint32_t>::max();
+  for (const KdTree& tree : trees) {
+    if (tree.nodes.size() > kMostLinks - model.kd_nodes.size() ||
+        tree.refs.size() > kMostLinks - model.kd_refs.size())
+      throw Error(ErrorCode::kOverLimit,
+                  "the fuzzy kd-trees have more than 2^32 nodes or references: ask for fewer "
+                  "segments");
+    model.fuzzy_trees.push_back({static_cast<std::uint32_t>(model.kd_nodes.size()),
+                                 static_cast<std::uint32_t>(tree.nodes.size()),
+                                 static_cast<std::uint32_t>(model.kd_refs.size()),
+                                 static_cast<std::uint32_t>(tree.refs.size()), tree.bounds});
+    model.kd_nodes.insert(model.kd_nodes.end(), tree.nodes.begin(), tree.nodes.end());
+    model.kd_refs.insert(model.kd_refs.end(), tree.refs.begin(), tree.refs.end());
   }
 }
 
-std::vector<Cluster> cluster_ranges(const ClusterMembers& members, std::span<const Aabb> boxes) {
+std::vector<Cluster> cluster_ranges(const ClusterMembers& members) {
   std::vector<Cluster> clusters(members.cluster_count());
-  for (std::uint32_t c = 0; c < clusters.size(); ++c) {
-    clusters[c].first_triangle = members.triangle_begin[c];
-    clusters[c].triangle_count = members.triangle_begin[c + 1] - members.triangle_begin[c];
-    for (const Aabb& box : boxes.subspan(clusters[c].first_triangle, clusters[c].triangle_count))
-      clusters[c].local_box.extend(box);
-  }
+  for (std::uint32_t c = 0; c < clusters.size(); ++c)
+    clusters[c] = {members.triangle_begin[c],
+                   members.triangle_begin[c + 1] - members.triangle_begin[c]};
   return clusters;
+}
+
+/// Mean over time: a segment counts by the intervals between keys it has.
+double mean_work(std::span<const Segment> segments, std::span<const ClusterWork> work) {
+  const std::size_t clusters = work.size() / segments.size();
+  double sum = 0, all = 0;
+  for (std::size_t s = 0; s < segments.size(); ++s) {
+    const double intervals = std::max(1u, segments[s].last_key - segments[s].first_key);
+    sum += intervals * expected_work(work.subspan(s * clusters, clusters), {});
+    all += intervals;
+  }
+  return sum / all;
 }
 
 }  // namespace
 
-AssembledModel assemble_model(PoseSequence sequence, const ClusterMembers& members, KeyMaps maps,
-                              std::uint32_t rest_key, ProgressSink& progress) {
+AssembledModel assemble_model(PoseSequence sequence, const ClusterMembers& members,
+                              ModelParts parts, ProgressSink& progress) {
   progress.report("build", 0);
   AssembledModel result;
   ModelStorage& model = result.model;
   model.vertex_count = sequence.vertex_count;
-  model.rest_key = rest_key;
-  model.rest_diagonal = pose_box(sequence, rest_key).diagonal();
-  model.fuzzy_boxes = fuzzy_boxes(sequence, members, maps.local_from_world);
+  model.rest_key = parts.rest_key;
+  Aabbd rest_box;
+  for (const Vec3f& v : sequence.pose(parts.rest_key)) rest_box.extend(to_double(v));
+  model.rest_diagonal = rest_box.diagonal();
+  model.segments = std::move(parts.segments);
+  model.fuzzy_boxes.reserve(model.segments.size() * sequence.triangles.size());
+  for (const Segment& segment : model.segments) {
+    const std::vector<Aabb> boxes = fuzzy_boxes(sequence, members, parts.local_from_world, segment);
+    model.fuzzy_boxes.insert(model.fuzzy_boxes.end(), boxes.begin(), boxes.end());
+  }
   model.cluster_world_boxes = cluster_world_boxes(sequence, members);
   for (const Aabb& box : model.cluster_world_boxes) model.bounds.extend(box);
-  model.clusters = cluster_ranges(members, model.fuzzy_boxes);
-  model.local_from_world = std::move(maps.local_from_world);
+  model.clusters = cluster_ranges(members);
+  model.local_from_world = std::move(parts.local_from_world);
+  model.triangles = std::move(sequence.triangles);
   progress.report("build", 0.4);
 
-  std::vector<double> model_areas(sequence.key_count());
-  for (std::size_t key = 0; key < model_areas.size(); ++key)
-    model_areas[key] = pose_box(sequence, static_cast<std::uint32_t>(key)).surface_area();
-  for (std::size_t c = 0; c < model.clusters.size(); ++c)
-    result.work.push_back(cluster_work(model, c, model_areas));
-  build_fuzzy_trees(model, result.work, progress);
+  const std::vector<double> model_areas = pose_box_areas(sequence);
+  const AreaWeightTable weights(model.local_from_world, model_areas, {});
+  std::vector<ClusterWork> work;
+  for (std::uint32_t s = 0; s < model.segments.size(); ++s)
+    for (std::size_t c = 0; c < model.clusters.size(); ++c)
+      work.push_back(cluster_work(model, s, c, weights, model_areas));
+  result.expected_work = mean_work(model.segments, work);
+  build_fuzzy_trees(model, work, progress);
 
   model.source_triangles = members.triangles;
-  model.triangles = std::move(sequence.triangles);
   permute(model.triangles, model.source_triangles, 1);
   model.appearance = std::move(sequence.appearance);
   permute(model.appearance.triangle_materials, model.source_triangles, 1);

@@ -8,18 +8,24 @@
 #include "common/motion/model.h"
 #include "common/motion/pose_sequence.h"
 #include "preprocess/cluster_members.h"
-#include "preprocess/cost.h"
-#include "preprocess/key_maps.h"
 
 namespace mdk {
 
-struct AssembledModel {
-  ModelStorage model;
-  std::vector<ClusterWork> work;  ///< K: the cost's view of the finished clusters
+/// What was decided about a sequence, besides its clusters.
+struct ModelParts {
+  std::vector<Affine3f> local_from_world;  ///< F * K, key-major
+  std::vector<Segment> segments;
+  std::uint32_t rest_key = 0;
 };
 
-/// Consumes the sequence and the maps. Reports stage "build".
-AssembledModel assemble_model(PoseSequence sequence, const ClusterMembers& members, KeyMaps maps,
-                              std::uint32_t rest_key, ProgressSink& progress);
+struct AssembledModel {
+  ModelStorage model;
+  double expected_work = 0;  ///< of a ray that meets the model, mean over time (cost.h)
+};
+
+/// Consumes the sequence and the parts. Reports stage "build". Throws Error (kOverLimit) where the
+/// trees outgrow 32-bit links.
+AssembledModel assemble_model(PoseSequence sequence, const ClusterMembers& members,
+                              ModelParts parts, ProgressSink& progress);
 
 }  // namespace mdk

@@ -14,6 +14,7 @@
 #include "preprocess/key_sampling.h"
 #include "preprocess/local_frame.h"
 #include "preprocess/model_assembly.h"
+#include "preprocess/segments.h"
 
 namespace mdk {
 namespace {
@@ -143,6 +144,14 @@ Decision cluster_motion(const PoseSequence& sequence, const DecomposeOptions& op
           frames.local_from_rest,       std::move(growth.steps),      growth.stop_reason};
 }
 
+std::vector<std::string> segment_notes(const DecomposeOptions& options, std::size_t segments) {
+  if (options.segments <= segments) return {};
+  return {std::to_string(options.segments) +
+          " segments are more than the animation has intervals "
+          "between keys: it got " +
+          std::to_string(segments)};
+}
+
 /// Residuals are reported relative to the rest pose's diagonal; a rest pose that is a point has
 /// none, and the model's largest extent stands in.
 double residual_unit(double rest_diagonal, double unit) {
@@ -157,7 +166,7 @@ DecomposeStats make_stats(const Decision& decision, const AssembledModel& assemb
   stats.stop_reason = decision.stop_reason;
   stats.residual_rms = residual.rms / length;
   stats.residual_max = residual.max / length;
-  stats.sah_cost = expected_work(assembled.work, {});
+  stats.sah_cost = assembled.expected_work;
   for (const GrowthStep& s : decision.steps)
     stats.steps.push_back({s.clusters, s.residual_rms * unit / length, s.cost});
   return stats;
@@ -186,14 +195,18 @@ DecomposeResult decompose(PoseSequence sequence, const DecomposeOptions& options
   KeyMaps maps =
       motion ? fit_key_maps(sequence, members, decision.rest_key, decision.local_from_rest, unit)
              : identity_key_maps(sequence, members, decision.rest_key);
-  const ResidualStats residual = maps.residual;
+  ModelParts parts{std::move(maps.local_from_world), {}, decision.rest_key};
+  progress.report("decompose", 0.95);
+  parts.segments =
+      choose_segments(sequence, members, parts.local_from_world, {.count = options.segments});
   progress.report("decompose", 1);
   const double decompose_seconds = watch.lap();
 
   AssembledModel assembled =
-      assemble_model(std::move(sequence), members, std::move(maps), decision.rest_key, progress);
+      assemble_model(std::move(sequence), members, std::move(parts), progress);
   DecomposeResult result;
-  result.stats = make_stats(decision, assembled, residual, unit);
+  result.stats = make_stats(decision, assembled, maps.residual, unit);
+  result.stats.notes = segment_notes(options, assembled.model.segments.size());
   result.stats.decompose_seconds = decompose_seconds;
   result.stats.build_seconds = watch.seconds();
   result.model = std::move(assembled.model);

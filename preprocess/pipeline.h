@@ -19,10 +19,12 @@ enum class DecomposeMode {
 
 struct DecomposeOptions {
   DecomposeMode mode = DecomposeMode::kMotion;
-  std::uint32_t clusters = 0;               ///< exactly so many; 0: as many as pay
-  std::optional<double> stop_percent;       ///< GFW06's rule: stop when a cluster lowers the residual by
-                                            ///< less than this; without it the cost decides
-  std::optional<std::uint32_t> rest_key;    ///< fixed rest pose; none: searched
+  std::uint32_t clusters = 0;          ///< exactly so many; 0: as many as pay
+  std::optional<double> stop_percent;  ///< GFW06's rule: stop when a cluster lowers the residual by
+                                       ///< less than this; without it the cost decides
+  std::optional<std::uint32_t> rest_key;  ///< fixed rest pose; none: searched
+  std::uint32_t segments = 0;             ///< exactly so many, or as many as there can be; 0: as
+                                          ///< many as pay
 };
 
 /// What happened while clusters were added; row i is the state with i + 1 clusters.
@@ -34,11 +36,12 @@ struct ClusteringStep {
 
 struct DecomposeStats {
   std::uint32_t rest_key = 0;
-  std::string stop_reason;   ///< one of: "cost", "percent", "count", "limit", "none"
-  double residual_rms = 0;   ///< over all keys, relative to the rest pose's diagonal
+  std::string stop_reason;  ///< one of: "cost", "percent", "count", "limit", "none"
+  double residual_rms = 0;  ///< over all keys, relative to the rest pose's diagonal
   double residual_max = 0;
   double sah_cost = 0;
   std::vector<ClusteringStep> steps;
+  std::vector<std::string> notes;  ///< sentences on what could not be done as asked
   double decompose_seconds = 0, build_seconds = 0;
 };
 

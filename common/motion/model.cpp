@@ -20,6 +20,8 @@ Model ModelStorage::view() const {
   model.clusters = clusters;
   model.local_from_world = local_from_world;
   model.cluster_world_boxes = cluster_world_boxes;
+  model.segments = segments;
+  model.fuzzy_trees = fuzzy_trees;
   model.fuzzy_boxes = fuzzy_boxes;
   model.kd_nodes = kd_nodes;
   model.kd_refs = kd_refs;
@@ -56,6 +58,14 @@ std::uint32_t clip_of_key(const Model& model, std::uint32_t key) {
       model.clips.begin(), model.clips.end(), key,
       [](std::uint32_t value, const Clip& clip) { return value < clip.first_key; });
   return static_cast<std::uint32_t>(after - model.clips.begin()) - 1;
+}
+
+std::uint32_t segment_of(const Model& model, const KeyInterval& at) {
+  // The first segment that reaches key1 holds key0, too: the one before ends at key0 or earlier.
+  const auto reaches = std::lower_bound(
+      model.segments.begin(), model.segments.end(), at.key1,
+      [](const Segment& segment, std::uint32_t key) { return segment.last_key < key; });
+  return static_cast<std::uint32_t>(reaches - model.segments.begin());
 }
 
 Aabb clip_bounds(const Model& model, std::uint32_t clip) {

@@ -18,19 +18,35 @@
 
 namespace mdk {
 
-/// One cluster: triangles that move alike, in one local basis (GFW06 §3.1). 64 bytes, as the file
+/// One cluster: triangles that move alike, in one local basis (GFW06 §3.1). 8 bytes, as the file
 /// holds it. Clusters partition the triangles in order: each one's range starts where the last
 /// ended.
 struct Cluster {
   std::uint32_t first_triangle = 0, triangle_count = 0;
-  std::uint32_t first_node = 0, node_count = 0;  ///< its fuzzy kd-tree in kd_nodes
-  std::uint32_t first_ref = 0, ref_count = 0;    ///< its leaves' references in kd_refs
-  Aabb local_box;                                ///< holds every fuzzy box of the cluster
-  std::uint32_t reserved[4] = {0, 0, 0, 0};
 };
-static_assert(sizeof(Cluster) == 64);
 
-/// F keys, V vertices, T triangles, K clusters.
+/// A stretch of the time line with fuzzy boxes and trees of its own, both keys inclusive; clusters
+/// and maps are shared by all (GFW06 §6). 8 bytes, as the file holds it. Segments cover the keys in
+/// order. A cut inside a clip shares its key, so that each interval between keys lies in one
+/// segment; a cut between clips shares nothing:
+///
+///     keys       0  1  2  3  4 | 5  6       a clip of five keys, one of two
+///     segments  [0     2]
+///                     [2     4]  [5  6]     cut at key 2, and between the clips
+struct Segment {
+  std::uint32_t first_key = 0, last_key = 0;
+
+  bool operator==(const Segment&) const = default;
+};
+
+/// The fuzzy kd-tree of one cluster in one segment. 40 bytes, as the file holds it.
+struct FuzzyTree {
+  std::uint32_t first_node = 0, node_count = 0;  ///< in kd_nodes
+  std::uint32_t first_ref = 0, ref_count = 0;    ///< in kd_refs
+  Aabb local_box;  ///< holds the fuzzy boxes of the cluster in the segment
+};
+
+/// F keys, V vertices, T triangles, K clusters, S segments.
 struct Model {
   std::uint32_t vertex_count = 0;
   std::uint32_t rest_key = 0;  ///< the pose the local bases were fitted to (GFW06 §3.3)
@@ -47,9 +63,12 @@ struct Model {
   std::span<const Cluster> clusters;           ///< K
   std::span<const Affine3f> local_from_world;  ///< F * K, key-major
   std::span<const Aabb> cluster_world_boxes;   ///< F * K, key-major
-  std::span<const Aabb> fuzzy_boxes;           ///< T, in the local basis of its cluster
-  std::span<const KdNode> kd_nodes;            ///< node links relative to the cluster's first node
-  std::span<const std::uint32_t> kd_refs;      ///< triangle indices (absolute)
+
+  std::span<const Segment> segments;       ///< S, at least one
+  std::span<const FuzzyTree> fuzzy_trees;  ///< S * K, segment-major
+  std::span<const Aabb> fuzzy_boxes;       ///< S * T, segment-major, in the cluster's local basis
+  std::span<const KdNode> kd_nodes;        ///< node links relative to the tree's first node
+  std::span<const std::uint32_t> kd_refs;  ///< triangle indices (absolute)
 
   std::span<const Material> materials;
   std::span<const std::uint32_t> triangle_materials;  ///< T
@@ -61,6 +80,7 @@ struct Model {
   std::uint32_t key_count() const { return static_cast<std::uint32_t>(key_times.size()); }
   std::uint32_t triangle_count() const { return static_cast<std::uint32_t>(triangles.size()); }
   std::uint32_t cluster_count() const { return static_cast<std::uint32_t>(clusters.size()); }
+  std::uint32_t segment_count() const { return static_cast<std::uint32_t>(segments.size()); }
 
   std::span<const Vec3f> key_pose(std::uint32_t key) const {
     return key_positions.subspan(static_cast<std::size_t>(key) * vertex_count, vertex_count);
@@ -74,9 +94,19 @@ struct Model {
     return cluster_world_boxes.subspan(static_cast<std::size_t>(key) * clusters.size(),
                                        clusters.size());
   }
-  KdTreeView fuzzy_tree(const Cluster& c) const {
-    return {kd_nodes.subspan(c.first_node, c.node_count), kd_refs.subspan(c.first_ref, c.ref_count),
-            c.local_box};
+  /// T boxes that hold at every time of a segment.
+  std::span<const Aabb> segment_boxes(std::uint32_t segment) const {
+    return fuzzy_boxes.subspan(static_cast<std::size_t>(segment) * triangles.size(),
+                               triangles.size());
+  }
+  /// Trees of all clusters in a segment.
+  std::span<const FuzzyTree> segment_trees(std::uint32_t segment) const {
+    return fuzzy_trees.subspan(static_cast<std::size_t>(segment) * clusters.size(),
+                               clusters.size());
+  }
+  KdTreeView tree_view(const FuzzyTree& t) const {
+    return {kd_nodes.subspan(t.first_node, t.node_count), kd_refs.subspan(t.first_ref, t.ref_count),
+            t.local_box};
   }
   double clip_seconds(const Clip& clip) const {
     return key_times[clip.first_key + clip.key_count - 1];
@@ -98,6 +128,8 @@ struct ModelStorage {
   std::vector<Cluster> clusters;
   std::vector<Affine3f> local_from_world;
   std::vector<Aabb> cluster_world_boxes;
+  std::vector<Segment> segments;
+  std::vector<FuzzyTree> fuzzy_trees;
   std::vector<Aabb> fuzzy_boxes;
   std::vector<KdNode> kd_nodes;
   std::vector<std::uint32_t> kd_refs;
@@ -122,6 +154,10 @@ KeyInterval locate_time(const Model& model, std::uint32_t clip, double seconds);
 
 /// Exactly at a key.
 inline KeyInterval at_key(std::uint32_t key) { return {key, key, 0.0f}; }
+
+/// The segment whose boxes hold at a moment; at a key that two segments share, the earlier one.
+/// Cost: O(log segments).
+std::uint32_t segment_of(const Model& model, const KeyInterval& at);
 
 /// A box that holds the mesh at every time of a clip. Cost: O(keys of the clip * clusters).
 Aabb clip_bounds(const Model& model, std::uint32_t clip);

@@ -35,6 +35,7 @@ struct BakeArguments {
   std::string clusters = "auto";
   std::string stop = "cost";
   std::string rest_pose = "auto";
+  std::string segments = "auto";
   MachineOptions machine;
   MessageOptions messages;
 };
@@ -56,6 +57,8 @@ DecomposeOptions parse_decompose_options(const BakeArguments& arguments) {
   }
   if (arguments.rest_pose != "auto")
     options.rest_key = parse_count("--rest-pose", arguments.rest_pose, {0, 0xffffffffu});
+  if (arguments.segments != "auto")
+    options.segments = parse_count("--segments", arguments.segments, {});
 
   if (options.clusters > 0 && options.stop_percent)
     throw Error(ErrorCode::kUsage,
@@ -86,7 +89,7 @@ void print_notes(const BakeArguments& arguments, const std::vector<std::string>&
   } else {
     std::cerr << "mdprep: " << joined_inputs(arguments) << ": " << notes.size()
               << (notes.size() == 1 ? " note" : " notes")
-              << " on what was left out; -v shows them\n";
+              << " on what was left out or is not as asked; -v shows them\n";
   }
 }
 
@@ -138,6 +141,7 @@ void run_bake(const BakeArguments& arguments) {
   if (!arguments.depfile.empty())
     write_text_file(arguments.depfile, depfile_text(arguments.output, source.dependencies));
   progress.clear();
+  source.notes.insert(source.notes.end(), result.stats.notes.begin(), result.stats.notes.end());
   print_notes(arguments, source.notes);
   if (arguments.messages.verbose) print_steps(result.stats.steps);
   if (!arguments.messages.quiet) std::cerr << bake_summary(model, result.stats, outcome);
@@ -164,6 +168,11 @@ void add_decompose_options(CLI::App& command, BakeArguments& arguments) {
                   "The key the local bases are fitted to, counted from 0 through all clips, or\n"
                   "the best there is (default: auto).")
       ->type_name("auto|KEY");
+  command
+      .add_option("--segments", arguments.segments,
+                  "Into how many stretches of time, each with boxes and trees of its own: as many\n"
+                  "as their memory pays, or exactly N, at least 1 (default: auto).")
+      ->type_name("auto|N");
 }
 
 }  // namespace

@@ -32,7 +32,7 @@ std::string bake_report_json(const Model& model, const DecomposeStats& stats,
       {"keys", model.key_count()},
       {"clips", clips},
       {"clusters", model.cluster_count()},
-      {"segments", 1},
+      {"segments", model.segment_count()},
       {"rest_key", stats.rest_key},
       {"stop_reason", stats.stop_reason},
       {"residual_rms", stats.residual_rms},
@@ -61,14 +61,14 @@ std::string bake_summary(const Model& model, const DecomposeStats& stats,
   return outcome.output + ": " + count(model.triangle_count(), "triangle") + ", " +
          grouped_text(model.vertex_count) + " vertices, " + count(model.key_count(), "key") +
          " in " + count(model.clips.size(), "clip") + "\n  " +
-         count(model.cluster_count(), "cluster") + " (" + stop_text(stats.stop_reason) +
-         "), rest pose key " + std::to_string(stats.rest_key) + ", residual " +
-         percent(stats.residual_rms) + " rms, " + percent(stats.residual_max) +
-         " at most of the diagonal, cost " + fixed_text(stats.sah_cost, 1) + "\n  " +
-         bytes_text(outcome.file_bytes) + " in " + fixed_text(s.total, 2) + " s (read " +
-         fixed_text(s.read, 2) + ", decompose " + fixed_text(s.decompose, 2) + ", build " +
-         fixed_text(s.build, 2) + ", write " + fixed_text(s.write, 2) + "), peak memory " +
-         bytes_text(outcome.peak_memory_bytes) + "\n";
+         count(model.cluster_count(), "cluster") + " (" + stop_text(stats.stop_reason) + "), " +
+         count(model.segment_count(), "time segment") + ", rest pose key " +
+         std::to_string(stats.rest_key) + ", residual " + percent(stats.residual_rms) + " rms, " +
+         percent(stats.residual_max) + " at most of the diagonal, cost " +
+         fixed_text(stats.sah_cost, 1) + "\n  " + bytes_text(outcome.file_bytes) + " in " +
+         fixed_text(s.total, 2) + " s (read " + fixed_text(s.read, 2) + ", decompose " +
+         fixed_text(s.decompose, 2) + ", build " + fixed_text(s.build, 2) + ", write " +
+         fixed_text(s.write, 2) + "), peak memory " + bytes_text(outcome.peak_memory_bytes) + "\n";
 }
 
 }  // namespace mdk

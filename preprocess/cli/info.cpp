@@ -47,6 +47,13 @@ Json json_of_clips(const Model& model) {
   return clips;
 }
 
+Json json_of_segments(const Model& model) {
+  Json segments = Json::array();
+  for (const Segment& segment : model.segments)
+    segments.push_back({{"first_key", segment.first_key}, {"last_key", segment.last_key}});
+  return segments;
+}
+
 void print_json(const MdkFile& file) {
   const Model& model = file.model();
   Json textures = Json::array();
@@ -64,6 +71,7 @@ void print_json(const MdkFile& file) {
       {"vertices", model.vertex_count},
       {"keys", model.key_count()},
       {"clips", json_of_clips(model)},
+      {"segments", json_of_segments(model)},
       {"clusters", model.cluster_count()},
       {"smallest_cluster_triangles", sizes.smallest},
       {"largest_cluster_triangles", sizes.largest},
@@ -98,6 +106,16 @@ std::string textures_text(const Model& model) {
   return model.textures.empty() ? text : text + ")";
 }
 
+/// How many, and the keys of the first few.
+std::string segments_text(const Model& model) {
+  constexpr std::uint32_t kShown = 8;
+  std::string text = grouped_text(model.segment_count()) + " (keys";
+  for (std::uint32_t s = 0; s < std::min(kShown, model.segment_count()); ++s)
+    text += (s == 0 ? " " : ", ") + std::to_string(model.segments[s].first_key) + "-" +
+            std::to_string(model.segments[s].last_key);
+  return text + (model.segment_count() > kShown ? ", ...)" : ")");
+}
+
 void print_facts(const MdkFile& file) {
   const Model& model = file.model();
   const ClusterSizes sizes = cluster_sizes(model);
@@ -110,6 +128,7 @@ void print_facts(const MdkFile& file) {
   facts.add_row({"clusters", grouped_text(model.cluster_count()) + " (of " +
                                  grouped_text(sizes.smallest) + " to " +
                                  grouped_text(sizes.largest) + " triangles)"});
+  facts.add_row({"time segments", segments_text(model)});
   facts.add_row({"fuzzy kd-trees", grouped_text(model.kd_nodes.size()) + " nodes, " +
                                        grouped_text(model.kd_refs.size()) + " references"});
   facts.add_row({"rest pose", "key " + std::to_string(model.rest_key) + " (" +

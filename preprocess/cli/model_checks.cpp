@@ -60,8 +60,20 @@ class MomentCheck {
   explicit MomentCheck(const Model& model)
       : model_(model), mesh_(model), owner_(triangle_clusters(model)) {}
 
+  /// At a key that two segments share, the boxes of both must hold.
   BoxFailures check(const KeyInterval& at) {
+    const std::uint32_t segment = segment_of(model_, at);
+    BoxFailures failures = check(at, segment);
+    if (segment + 1 < model_.segment_count() && model_.segments[segment + 1].first_key == at.key0) {
+      failures.fuzzy.add(check(at, segment + 1).fuzzy);
+    }
+    return failures;
+  }
+
+ private:
+  BoxFailures check(const KeyInterval& at, std::uint32_t segment) {
     mesh_.set_time(at);
+    fuzzy_boxes_ = model_.segment_boxes(segment);
     maps_.resize(model_.cluster_count());
     world_boxes_.resize(model_.cluster_count());
     for (std::uint32_t c = 0; c < model_.cluster_count(); ++c) {
@@ -79,10 +91,9 @@ class MomentCheck {
     return all;
   }
 
- private:
   void check_triangle(std::uint32_t t, BoxFailures& failures) const {
     const std::uint32_t c = owner_[t];
-    const Aabbd fuzzy_box = to_double(model_.fuzzy_boxes[t]);
+    const Aabbd fuzzy_box = to_double(fuzzy_boxes_[t]);
     bool in_fuzzy = true, in_world = true, in_bounds = true;
     for (const std::uint32_t v : model_.triangles[t].v) {
       const Vec3f& position = mesh_.positions()[v];
@@ -98,6 +109,7 @@ class MomentCheck {
   const Model& model_;
   PosedMesh mesh_;
   std::vector<std::uint32_t> owner_;
+  std::span<const Aabb> fuzzy_boxes_;
   std::vector<Affine3d> maps_;
   std::vector<Aabb> world_boxes_;
 };
@@ -138,18 +150,21 @@ class LeafWalk {
   std::uint64_t leaves_ = 0;
 };
 
-void check_tree(const Model& model, const Cluster& cluster, CheckResult& boxes,
+void check_tree(const Model& model, std::size_t tree_index, CheckResult& boxes,
                 CheckResult& leaves) {
-  const KdTreeView tree = model.fuzzy_tree(cluster);
+  const Cluster& cluster = model.clusters[tree_index % model.clusters.size()];
+  const auto segment = static_cast<std::uint32_t>(tree_index / model.clusters.size());
+  const KdTreeView tree = model.tree_view(model.fuzzy_trees[tree_index]);
   for (std::uint32_t i = 0; i < cluster.triangle_count; ++i) {
     const std::uint32_t t = cluster.first_triangle + i;
-    const Aabb& box = model.fuzzy_boxes[t];
+    const Aabb& box = model.segment_boxes(segment)[t];
     Failures outside, unlisted;
-    if (!cluster.local_box.contains(box)) outside.add(t);
+    if (!tree.bounds.contains(box)) outside.add(t);
     LeafWalk walk(tree, box, t);
     if (!walk.is_listed(0)) unlisted.add(t);
-    record(boxes, 1, outside, "any time");
-    record(leaves, walk.leaves(), unlisted, "any time");
+    const std::string when = "any time of segment " + std::to_string(segment);
+    record(boxes, 1, outside, when);
+    record(leaves, walk.leaves(), unlisted, when);
   }
 }
 
@@ -215,9 +230,10 @@ std::vector<CheckResult> check_boxes(const Model& model, std::span<const KeyInte
 std::vector<CheckResult> check_trees(const Model& model, ProgressSink& progress) {
   CheckResult boxes{"local boxes hold their fuzzy boxes", 0, 0, ""};
   CheckResult leaves{"leaves list every triangle that reaches into them", 0, 0, ""};
-  for (std::uint32_t c = 0; c < model.cluster_count(); ++c) {
-    progress.report("trees", static_cast<double>(c) / model.cluster_count());
-    check_tree(model, model.clusters[c], boxes, leaves);
+  for (std::size_t i = 0; i < model.fuzzy_trees.size(); ++i) {
+    progress.report("trees",
+                    static_cast<double>(i) / static_cast<double>(model.fuzzy_trees.size()));
+    check_tree(model, i, boxes, leaves);
   }
   return {boxes, leaves};
 }

@@ -72,6 +72,35 @@ TEST(Agreement, EveryTechniqueGivesBruteForcesHitsOnEveryScene) {
   }
 }
 
+TEST(Agreement, HoldsInEveryTimeSegmentAndAtTheCuts) {
+  DecomposeOptions options;
+  options.segments = 4;
+  SilentProgress silent;
+  const DecomposeResult baked = decompose(test::bending_tube(30, 16, 13), options, silent);
+  const Model model = baked.model.view();
+  ASSERT_EQ(model.segment_count(), 4u);
+  Renderer oracle(model, "brute-force"), renderer(model, "brute-force");
+  const auto expect_agreement = [&](const KeyInterval& at) {
+    const FrameRequest request{
+        .at = at, .camera = fit_camera(model.bounds, 1.0), .width = 75, .height = 61};
+    EXPECT_GT(oracle.trace(request).hits, 0u);
+    for (const TechniqueInfo& technique : technique_table()) {
+      renderer.set_technique(technique.id);
+      renderer.trace(request);
+      EXPECT_EQ(count_mismatches(oracle.hits(), renderer.hits()), 0u)
+          << technique.id << ", keys " << at.key0 << "-" << at.key1 << " at " << at.s;
+    }
+  };
+  // Back and forth, so that trees are swapped in both directions.
+  for (std::uint32_t i = 0; i + 1 < model.key_count(); ++i) {
+    const std::uint32_t key = i % 2 == 0 ? i / 2 : model.key_count() - 2 - i / 2;
+    expect_agreement(at_key(key));
+    expect_agreement({key, key + 1, 0x1p-20f});
+    expect_agreement({key, key + 1, 0.6f});
+    expect_agreement({key, key + 1, 0x1.fffffep-1f});
+  }
+}
+
 TEST(Agreement, HitsAndCountsDoNotDependOnInstructionSetOrThreads) {
   const ResetIsa reset;
   const DecomposeResult baked = bake(test::bending_tube(40, 24, 12));

@@ -80,9 +80,11 @@ TEST_F(Bench, CountsAreTheSameEveryTime) {
 
 TEST_F(Bench, AMismatchIsReportedAndIsAnInternalFault) {
   ModelStorage model = sample_model();
-  for (const Cluster& cluster : model.clusters)  // the trees know one triangle each
-    for (std::uint32_t i = 0; i < cluster.ref_count; ++i)
-      model.kd_refs[cluster.first_ref + i] = cluster.first_triangle;
+  for (std::size_t i = 0; i < model.fuzzy_trees.size(); ++i) {  // the trees know one triangle each
+    const FuzzyTree& tree = model.fuzzy_trees[i];
+    std::fill_n(model.kd_refs.begin() + tree.first_ref, tree.ref_count,
+                model.clusters[i % model.clusters.size()].first_triangle);
+  }
   write_mdk(model.view(), folder_.file("wrong.mdk"));
   const Outcome run = run_mdprep({"bench", folder_.file("wrong.mdk"), "--size", "128x128",
                                   "--rounds", "1", "-q", "--json", folder_.file("b.json")});

@@ -62,6 +62,22 @@ TEST_F(ModelChecks, AShrunkenFuzzyBoxIsSeenAndItsTriangleNamed) {
   EXPECT_EQ(results[0].detail.rfind("first: triangle 5 at key ", 0), 0u) << results[0].detail;
 }
 
+TEST_F(ModelChecks, AtAKeyThatTwoSegmentsShareTheBoxesOfBothAreLookedAt) {
+  ASSERT_EQ(model_.segments.size(), 2u);
+  const std::uint32_t cut = model_.segments[1].first_key;
+  ASSERT_EQ(cut, model_.segments[0].last_key);
+  for (std::uint32_t segment = 0; segment < 2; ++segment) {
+    ModelStorage wrong = model_;
+    Aabb& box = wrong.fuzzy_boxes[segment * model_.triangles.size() + 9];
+    box.hi = box.lo = box.lo - Vec3f{1, 1, 1};
+    const Model view = wrong.view();
+    SilentProgress silent;
+    const std::vector<CheckResult> results = check_boxes(view, {}, silent);
+    const std::uint32_t keys = view.segments[segment].last_key - view.segments[segment].first_key;
+    EXPECT_EQ(results[0].failures, keys + 1u) << "segment " << segment;
+  }
+}
+
 TEST_F(ModelChecks, AWrongMapIsSeen) {
   model_.local_from_world[model_.clusters.size() * 3].m[0][3] += 0.5f;
   EXPECT_EQ(failed(boxes()), (Names{"fuzzy boxes hold their triangles at keys",
@@ -84,17 +100,17 @@ TEST_F(ModelChecks, ShrunkenBoundsAreSeen) {
 }
 
 TEST_F(ModelChecks, AShrunkenLocalBoxIsSeen) {
-  model_.clusters[1].local_box.lo.x += 0.01f;
+  model_.fuzzy_trees[1].local_box.lo.x += 0.01f;
   const Names names = failed(trees());
   ASSERT_FALSE(names.empty());
   EXPECT_EQ(names[0], "local boxes hold their fuzzy boxes");
 }
 
 TEST_F(ModelChecks, AReferenceToTheWrongTriangleIsSeenByTreesAndHits) {
-  const Cluster& cluster = model_.clusters[0];
-  for (std::uint32_t i = 0; i < cluster.ref_count; ++i) {
-    std::uint32_t& ref = model_.kd_refs[cluster.first_ref + i];
-    if (ref == cluster.first_triangle + 1) ref = cluster.first_triangle;
+  const FuzzyTree& tree = model_.fuzzy_trees[0];
+  for (std::uint32_t i = 0; i < tree.ref_count; ++i) {
+    std::uint32_t& ref = model_.kd_refs[tree.first_ref + i];
+    if (ref == 1) ref = 0;
   }
   EXPECT_EQ(failed(trees()), (Names{"leaves list every triangle that reaches into them"}));
   SilentProgress silent;
@@ -105,10 +121,10 @@ TEST_F(ModelChecks, AReferenceToTheWrongTriangleIsSeenByTreesAndHits) {
 TEST_F(ModelChecks, AFlatBoxInASplitPlaneMayStandOnEitherSideButNotOnNone) {
   const auto passes_with = [&](std::vector<std::uint32_t> below, std::vector<std::uint32_t> above) {
     ModelStorage flat = *sound_;
-    flat.clusters.resize(1);
-    Cluster& cluster = flat.clusters[0];
-    cluster = {0, 1, 0, 3, 0, static_cast<std::uint32_t>(below.size() + above.size()), {}, {}};
-    cluster.local_box = {{-1, -1, -1}, {1, 1, 1}};
+    flat.clusters = {{0, 1}};
+    flat.segments.resize(1);
+    flat.fuzzy_trees = {{0, 3, 0, static_cast<std::uint32_t>(below.size() + above.size()),
+                         Aabb{{-1, -1, -1}, {1, 1, 1}}}};
     flat.fuzzy_boxes[0] = {{0, -1, -1}, {0, 1, 1}};
     const auto count = static_cast<std::uint32_t>(below.size());
     flat.kd_nodes = {KdNode::inner(0, 0.0f, 1), KdNode::leaf(0, count),

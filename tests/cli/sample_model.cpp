@@ -18,6 +18,7 @@ PoseSequence sample_sequence() {
 ModelStorage sample_model() {
   DecomposeOptions options;
   options.clusters = 3;
+  options.segments = 2;
   SilentProgress silent;
   return decompose(sample_sequence(), options, silent).model;
 }

@@ -32,6 +32,8 @@ ModelStorage copy_of(const Model& model) {
   copy_list(copy.clusters, model.clusters);
   copy_list(copy.local_from_world, model.local_from_world);
   copy_list(copy.cluster_world_boxes, model.cluster_world_boxes);
+  copy_list(copy.segments, model.segments);
+  copy_list(copy.fuzzy_trees, model.fuzzy_trees);
   copy_list(copy.fuzzy_boxes, model.fuzzy_boxes);
   copy_list(copy.kd_nodes, model.kd_nodes);
   copy_list(copy.kd_refs, model.kd_refs);

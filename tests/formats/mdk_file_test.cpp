@@ -58,6 +58,8 @@ void expect_same_model(const Model& mapped, const ModelStorage& original) {
   expect_same("clusters", mapped.clusters, original.clusters);
   expect_same("local_from_world", mapped.local_from_world, original.local_from_world);
   expect_same("cluster_world_boxes", mapped.cluster_world_boxes, original.cluster_world_boxes);
+  expect_same("segments", mapped.segments, original.segments);
+  expect_same("fuzzy_trees", mapped.fuzzy_trees, original.fuzzy_trees);
   expect_same("fuzzy_boxes", mapped.fuzzy_boxes, original.fuzzy_boxes);
   expect_same("kd_nodes", mapped.kd_nodes, original.kd_nodes);
   expect_same("kd_refs", mapped.kd_refs, original.kd_refs);
@@ -98,7 +100,6 @@ TEST_F(MdkFileTest, GivesBackAModelWithoutAnyOptionalList) {
 TEST_F(MdkFileTest, SameModelGivesTheSameBytes) {
   const Bytes first = sample_bytes();
   ModelStorage again = sample_model();
-  for (Cluster& cluster : again.clusters) cluster.reserved[1] = 0xdeadbeef;
   write_mdk(again.view(), folder_.file("again.mdk"));
   EXPECT_EQ(read_bytes(folder_.file("again.mdk")), first);
 }
@@ -111,10 +112,10 @@ TEST_F(MdkFileTest, WriterReturnsTheSizeOfTheFile) {
 
 TEST_F(MdkFileTest, HeaderIsAsSpecified) {
   const Bytes bytes = sample_bytes();
-  const Bytes magic = {0x89, 'M', 'D', 'K', 0x0d, 0x0a, 0x1a, 0x0a, 4, 3, 2, 1, 1, 0, 0, 0};
+  const Bytes magic = {0x89, 'M', 'D', 'K', 0x0d, 0x0a, 0x1a, 0x0a, 4, 3, 2, 1, 2, 0, 0, 0};
   EXPECT_EQ(Bytes(bytes.begin(), bytes.begin() + 16), magic);
   EXPECT_EQ(get<std::uint64_t>(bytes, 16), bytes.size());
-  EXPECT_EQ(get<std::uint32_t>(bytes, 24), 19u);
+  EXPECT_EQ(get<std::uint32_t>(bytes, 24), 21u);
   EXPECT_THAT(Bytes(bytes.begin() + 28, bytes.begin() + 56), testing::Each(0));
   Bytes resealed = bytes;
   seal(resealed);
@@ -149,7 +150,7 @@ TEST_F(MdkFileTest, SectionsAreAlignedApartSealedAndPaddedWithZeros) {
 TEST_F(MdkFileTest, RecordsAreAsSpecified) {
   const Bytes bytes = sample_bytes();
   const std::size_t model = find_section(bytes, "MODL").offset;
-  const std::uint32_t counts[] = {10, 3, 6, 2, 2, 0, 0, 0};
+  const std::uint32_t counts[] = {10, 3, 6, 2, 2, 0, 0, 2};
   for (int i = 0; i < 8; ++i) EXPECT_EQ(get<std::uint32_t>(bytes, model + 4 * i), counts[i]) << i;
   EXPECT_EQ(get<double>(bytes, model + 32), sample_model().rest_diagonal);
   EXPECT_EQ(get<float>(bytes, model + 56), 5.0f) << "bounds.hi.y";
@@ -158,12 +159,18 @@ TEST_F(MdkFileTest, RecordsAreAsSpecified) {
   for (int i = 0; i < 4; ++i) {
     EXPECT_EQ(get<std::uint32_t>(bytes, clips + 16 + 4 * i), second_clip[i]) << i;
   }
-  const std::size_t cluster = find_section(bytes, "CLUS").offset + 64;
-  const std::uint32_t second_cluster[] = {4, 2, 5, 1, 5, 2};
-  for (int i = 0; i < 6; ++i) {
-    EXPECT_EQ(get<std::uint32_t>(bytes, cluster + 4 * i), second_cluster[i]) << i;
+  const std::size_t cluster = find_section(bytes, "CLUS").offset + 8;
+  EXPECT_EQ(get<std::uint32_t>(bytes, cluster), 4u) << "first triangle";
+  EXPECT_EQ(get<std::uint32_t>(bytes, cluster + 4), 2u) << "triangle count";
+  const std::size_t segment = find_section(bytes, "SEGM").offset + 8;
+  EXPECT_EQ(get<std::uint32_t>(bytes, segment), 2u) << "first key";
+  EXPECT_EQ(get<std::uint32_t>(bytes, segment + 4), 2u) << "last key";
+  const std::size_t tree = find_section(bytes, "FTRE").offset + 40;
+  const std::uint32_t second_tree[] = {5, 1, 5, 2};
+  for (int i = 0; i < 4; ++i) {
+    EXPECT_EQ(get<std::uint32_t>(bytes, tree + 4 * i), second_tree[i]) << i;
   }
-  EXPECT_EQ(get<float>(bytes, cluster + 28), 4.0f) << "local_box.lo.y";
+  EXPECT_EQ(get<float>(bytes, tree + 20), 4.0f) << "local_box.lo.y";
   const std::size_t brick = find_section(bytes, "MATL").offset + 32;
   const std::uint32_t links[] = {1, 2, 2, 1};
   for (int i = 0; i < 4; ++i)
@@ -176,7 +183,7 @@ TEST_F(MdkFileTest, RecordsAreAsSpecified) {
 
 TEST_F(MdkFileTest, ListsItsSectionsByName) {
   const auto sections = MdkFile(written(sample_model())).sections();
-  ASSERT_EQ(sections.size(), 19u);
+  ASSERT_EQ(sections.size(), 21u);
   EXPECT_EQ(sections.front().name, "model");
   EXPECT_EQ(sections.front().bytes, 64u);
   EXPECT_EQ(sections.back().name, "key_positions");
@@ -305,9 +312,12 @@ TEST_F(MdkFileTest, RefusesWhatIsNoMdkFile) {
 TEST_F(MdkFileTest, RefusesOtherVersionsAndByteOrders) {
   const Bytes bytes = sample_bytes();
   Bytes newer = bytes;
-  put(newer, 12, std::uint16_t{2});
-  put(newer, 14, std::uint16_t{3});
-  expect_refused(newer, "has file format 2.3, this program reads 1.0");
+  put(newer, 12, std::uint16_t{3});
+  put(newer, 14, std::uint16_t{4});
+  expect_refused(newer, "has file format 3.4, this program reads 2.0");
+  Bytes older = bytes;
+  put(older, 12, std::uint16_t{1});
+  expect_refused(older, "has file format 1.0, this program reads 2.0");
   Bytes swapped = bytes;
   put(swapped, 8, std::uint32_t{0x04030201});
   expect_refused(swapped, "has an unknown byte order");
@@ -339,7 +349,7 @@ TEST_F(MdkFileTest, RefusesUnknownPoseKinds) {
 TEST_F(MdkFileTest, RefusesCountsThatDisagreeAndNamesOfNoClip) {
   const Bytes bytes = sample_bytes();
   const std::size_t model = find_section(bytes, "MODL").offset;
-  for (const std::size_t field : {4, 8, 12, 16}) {
+  for (const std::size_t field : {4, 8, 12, 16, 28}) {
     Bytes changed = bytes;
     put(changed, model + field, std::uint32_t{77});
     expect_refused(changed, "disagree");
@@ -367,8 +377,8 @@ TEST_F(MdkFileTest, CannotReadWhatIsMissingOrNoRegularFile) {
 
 TEST_F(MdkFileTest, WriterRefusesAnInconsistentModelAndWritesNothing) {
   ModelStorage storage = sample_model();
-  storage.clusters[1].first_node = 4;
-  expect_error(ErrorCode::kInternal, "clusters: cluster 1: its nodes do not start",
+  storage.fuzzy_trees[1].first_node = 4;
+  expect_error(ErrorCode::kInternal, "fuzzy_trees: tree 1: its nodes do not start",
                [&] { write_mdk(storage.view(), path_); });
   EXPECT_TRUE(folder_.names().empty());
 }

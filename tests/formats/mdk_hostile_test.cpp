@@ -25,7 +25,9 @@ class Walk {
 
   std::uint64_t everything() {
     for (std::uint32_t clip = 0; clip < model_.clips.size(); ++clip) times(clip);
-    for (const Cluster& cluster : model_.clusters) tree(model_.fuzzy_tree(cluster));
+    for (std::uint32_t s = 0; s < model_.segment_count(); ++s)
+      for (const FuzzyTree& fuzzy : model_.segment_trees(s))
+        tree(model_.tree_view(fuzzy), model_.segment_boxes(s));
     for (std::uint32_t t = 0; t < model_.triangle_count(); ++t) look(t);
     for (std::uint32_t key = 0; key < model_.key_count(); ++key) {
       for (const Affine3f& map : model_.key_maps(key)) see(map);
@@ -50,13 +52,17 @@ class Walk {
                                  end + 1, std::nan(""), HUGE_VAL}) {
       const KeyInterval at = locate_time(model_, clip, seconds);
       EXPECT_TRUE(at.s >= 0 && at.s < 1);
+      const std::uint32_t segment = segment_of(model_, at);
+      ASSERT_LT(segment, model_.segment_count());
+      EXPECT_LE(model_.segments[segment].first_key, at.key0);
+      EXPECT_GE(model_.segments[segment].last_key, at.key1);
       see(model_.key_pose(at.key0).back());
       see(model_.key_pose(at.key1).back());
     }
   }
 
   /// Depth first with a stack of the length the traversals have.
-  void tree(const KdTreeView& tree) {
+  void tree(const KdTreeView& tree, std::span<const Aabb> boxes) {
     std::uint32_t stack[kMaxKdDepth + 1];
     std::size_t height = 0, steps = 0, refs = 0;
     stack[height++] = 0;
@@ -71,15 +77,15 @@ class Walk {
       }
       ASSERT_LE(refs += node.ref_count(), tree.refs.size()) << "a reference is listed twice";
       for (const std::uint32_t t : tree.refs.subspan(node.first_ref(), node.ref_count()))
-        corners(t);
+        corners(t, boxes);
     }
   }
 
-  void corners(std::uint32_t triangle) {
+  void corners(std::uint32_t triangle, std::span<const Aabb> boxes) {
     for (const std::uint32_t v : model_.triangles[triangle].v) {
       for (std::uint32_t key = 0; key < model_.key_count(); ++key) see(model_.key_pose(key)[v]);
     }
-    see(model_.fuzzy_boxes[triangle]);
+    see(boxes[triangle]);
   }
 
   void look(std::uint32_t triangle) {

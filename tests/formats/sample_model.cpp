@@ -38,23 +38,16 @@ void add_geometry(ModelStorage& model) {
 }
 
 void add_clusters(ModelStorage& model) {
+  // A segment per clip. In the second the trees are single leaves.
+  model.segments = {{0, 1}, {2, 2}};
+  model.clusters = {{0, 4}, {4, 2}};
   model.kd_nodes = {KdNode::inner(0, 1.0f, 1), KdNode::leaf(0, 3), KdNode::inner(1, 2.0f, 3),
-                    KdNode::leaf(3, 2),        KdNode::leaf(5, 0), KdNode::leaf(0, 2)};
-  model.kd_refs = {0, 1, 2, 2, 3, 4, 5};
-  Cluster rising;
-  rising.triangle_count = 4;
-  rising.node_count = 5;
-  rising.ref_count = 5;
-  rising.local_box = {{0, 0, 0}, {2, 1, 0}};
-  Cluster still;
-  still.first_triangle = 4;
-  still.triangle_count = 2;
-  still.first_node = 5;
-  still.node_count = 1;
-  still.first_ref = 5;
-  still.ref_count = 2;
-  still.local_box = {{0, 4, 2}, {1, 5, 2}};
-  model.clusters = {rising, still};
+                    KdNode::leaf(3, 2),        KdNode::leaf(5, 0), KdNode::leaf(0, 2),
+                    KdNode::leaf(0, 4),        KdNode::leaf(0, 2)};
+  model.kd_refs = {0, 1, 2, 2, 3, 4, 5, 0, 1, 2, 3, 4, 5};
+  const Aabb rising{{0, 0, 0}, {2, 1, 0}}, still{{0, 4, 2}, {1, 5, 2}};
+  model.fuzzy_trees = {
+      {0, 5, 0, 5, rising}, {5, 1, 5, 2, still}, {6, 1, 7, 4, rising}, {7, 1, 11, 2, still}};
   for (std::uint32_t key = 0; key < kKeys; ++key) {
     const float y = kRise * static_cast<float>(key);
     Affine3f back;
@@ -62,7 +55,7 @@ void add_clusters(ModelStorage& model) {
     model.local_from_world.push_back(back);
     model.local_from_world.push_back(Affine3f{});
     model.cluster_world_boxes.push_back({{0, y, 0}, {2, y + 1, 0}});
-    model.cluster_world_boxes.push_back(still.local_box);
+    model.cluster_world_boxes.push_back(still);
   }
   for (const Cluster& cluster : model.clusters) {
     for (std::uint32_t i = 0; i < cluster.triangle_count; ++i) {
@@ -73,6 +66,8 @@ void add_clusters(ModelStorage& model) {
       model.fuzzy_boxes.push_back(box);
     }
   }
+  const std::vector<Aabb> first_segment = model.fuzzy_boxes;
+  model.fuzzy_boxes.insert(model.fuzzy_boxes.end(), first_segment.begin(), first_segment.end());
 }
 
 void add_appearance(ModelStorage& model) {

@@ -27,7 +27,10 @@ void expect_sound(const ModelStorage& m, const PoseSequence& source) {
   const std::size_t triangles = source.triangles.size(), clusters = m.clusters.size();
   ASSERT_GE(clusters, 1u);
   ASSERT_EQ(m.triangles.size(), triangles);
-  ASSERT_EQ(m.fuzzy_boxes.size(), triangles);
+  const std::size_t segments = m.segments.size();
+  ASSERT_GE(segments, 1u);
+  ASSERT_EQ(m.fuzzy_boxes.size(), segments * triangles);
+  ASSERT_EQ(m.fuzzy_trees.size(), segments * clusters);
   ASSERT_EQ(m.source_triangles.size(), triangles);
   ASSERT_EQ(m.local_from_world.size(), clusters * source.key_count());
   ASSERT_EQ(m.cluster_world_boxes.size(), clusters * source.key_count());
@@ -37,8 +40,10 @@ void expect_sound(const ModelStorage& m, const PoseSequence& source) {
     ASSERT_FALSE(seen[m.source_triangles[t]]);
     seen[m.source_triangles[t]] = true;
     EXPECT_EQ(m.triangles[t], source.triangles[m.source_triangles[t]]);
-    EXPECT_FALSE(m.fuzzy_boxes[t].empty());
-    EXPECT_TRUE(finite(m.fuzzy_boxes[t].lo) && finite(m.fuzzy_boxes[t].hi));
+  }
+  for (const Aabb& box : m.fuzzy_boxes) {
+    EXPECT_FALSE(box.empty());
+    EXPECT_TRUE(finite(box.lo) && finite(box.hi));
   }
   std::uint32_t next = 0;
   for (std::size_t c = 0; c < clusters; ++c) {
@@ -48,8 +53,9 @@ void expect_sound(const ModelStorage& m, const PoseSequence& source) {
     next += cluster.triangle_count;
     for (std::uint32_t t = cluster.first_triangle + 1; t < next; ++t)
       EXPECT_LT(m.source_triangles[t - 1], m.source_triangles[t]);
-    const KdTreeView tree = m.view().fuzzy_tree(cluster);
-    EXPECT_TRUE(is_well_formed(tree, cluster.first_triangle, next));
+    for (std::size_t s = 0; s < segments; ++s)
+      EXPECT_TRUE(is_well_formed(m.view().tree_view(m.fuzzy_trees[s * clusters + c]),
+                                 cluster.first_triangle, next));
   }
   EXPECT_EQ(next, triangles);
   for (const Affine3f& map : m.local_from_world) {

@@ -17,6 +17,7 @@ namespace {
 DecomposeResult decomposed(PoseSequence sequence, std::uint32_t clusters) {
   DecomposeOptions options;
   options.clusters = clusters;
+  options.segments = 1;
   SilentProgress progress;
   return decompose(std::move(sequence), options, progress);
 }
@@ -134,7 +135,8 @@ std::vector<Aabb> boxes_over_keys_only(const ModelStorage& model) {
   const ClusterMembers members =
       make_cluster_members(sequence.triangles, cluster_of_triangle,
                            static_cast<std::uint32_t>(model.clusters.size()), model.vertex_count);
-  return fuzzy_boxes(sequence, members, model.local_from_world, BetweenKeys::kIgnore);
+  return fuzzy_boxes(sequence, members, model.local_from_world, model.segments[0],
+                     BetweenKeys::kIgnore);
 }
 
 TEST(FuzzyBoxes, HoldTheirTrianglesAtEveryTimeHoweverWildTheMotion) {
@@ -200,9 +202,11 @@ TEST(FuzzyBoxes, HoldForTinyModels) {
 
 TEST(FuzzyBoxes, LieInTheirClustersLocalBox) {
   const ModelStorage model = decomposed(wild_motion(62, 8), 4).model;
-  for (const Cluster& c : model.clusters)
+  for (std::size_t i = 0; i < model.clusters.size(); ++i) {
+    const Cluster& c = model.clusters[i];
     for (std::uint32_t t = c.first_triangle; t < c.first_triangle + c.triangle_count; ++t)
-      EXPECT_TRUE(c.local_box.contains(model.fuzzy_boxes[t]));
+      EXPECT_TRUE(model.fuzzy_trees[i].local_box.contains(model.fuzzy_boxes[t]));
+  }
 }
 
 TEST(FuzzyBoxes, AreNotMuchLargerThanTheCurvesInThem) {

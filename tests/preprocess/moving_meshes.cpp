@@ -139,6 +139,8 @@ std::vector<unsigned char> model_bytes(const ModelStorage& model) {
   append(bytes, model.clusters);
   append(bytes, model.local_from_world);
   append(bytes, model.cluster_world_boxes);
+  append(bytes, model.segments);
+  append(bytes, model.fuzzy_trees);
   append(bytes, model.fuzzy_boxes);
   append(bytes, model.kd_nodes);
   append(bytes, model.kd_refs);

@@ -51,7 +51,7 @@ std::vector<Aabb> boxes_over_keys_only(const ModelStorage& model) {
       sequence,
       make_cluster_members(model.triangles, cluster_of_triangle,
                            static_cast<std::uint32_t>(model.clusters.size()), model.vertex_count),
-      model.local_from_world, BetweenKeys::kIgnore);
+      model.local_from_world, model.segments[0], BetweenKeys::kIgnore);
 }
 
 struct Target {
@@ -66,6 +66,7 @@ TEST_P(RealMotion, IsDecomposedBetterThanByAPlainImplementation) {
   if (!sequence) GTEST_SKIP() << "the sample sequences are not installed";
   DecomposeOptions options;
   options.clusters = 20;
+  options.segments = 1;
   SilentProgress progress;
   const DecomposeResult result = decompose(std::move(*sequence), options, progress);
   const double at_keys = median_area_ratio(result.model, boxes_over_keys_only(result.model));

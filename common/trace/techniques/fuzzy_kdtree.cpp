@@ -1,6 +1,6 @@
 // Motion decomposition with fuzzy kd-trees (GFW06). The trees stand in the model and never change;
 // per frame only the clusters move: K world boxes, a small kd-tree over them, and K maps for the
-// rays.
+// rays. Where the time line has segments, the present one's trees are swapped in.
 #include <vector>
 
 #include "common/math/affine_path.h"
@@ -13,10 +13,7 @@ namespace {
 class FuzzyKdTechnique final : public Technique {
  public:
   explicit FuzzyKdTechnique(const Model& model)
-      : model_(model), world_boxes_(model.cluster_count()), clusters_(model.cluster_count()) {
-    for (std::size_t c = 0; c < clusters_.size(); ++c)
-      clusters_[c].tree = model.fuzzy_tree(model.clusters[c]);
-  }
+      : model_(model), world_boxes_(model.cluster_count()), clusters_(model.cluster_count()) {}
 
   void update(const PosedMesh& mesh) override {
     soup_ = soup_of(mesh);
@@ -24,6 +21,9 @@ class FuzzyKdTechnique final : public Technique {
     for (std::uint32_t c = 0; c < world_boxes_.size(); ++c)
       world_boxes_[c] = cluster_world_box(model_, c, at_);
     top_ = build_kd_tree(world_boxes_);
+    const std::span<const FuzzyTree> trees = model_.segment_trees(segment_of(model_, at_));
+    for (std::size_t c = 0; c < clusters_.size(); ++c)
+      clusters_[c].tree = model_.tree_view(trees[c]);
   }
 
   void set_view(const PinholeRays& rays) override {
