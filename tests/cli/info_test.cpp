@@ -29,6 +29,8 @@ TEST_F(Info, JsonTellsWhatWasBaked) {
   EXPECT_EQ(info["clips"][1],
             Json::parse(R"({"name":"swing","seconds":0.5,"first_key":31,"keys":16})"));
   EXPECT_GE(info["clusters"], 2);
+  EXPECT_EQ(info["segments"].front()["first_key"], 0);
+  EXPECT_EQ(info["segments"].back()["last_key"], kSampleKeys - 1);
   EXPECT_EQ(info["materials"], 2);
   EXPECT_EQ(info["textures"], Json::array());
   EXPECT_LT(info["bounds"]["lo"][1], 0.01);

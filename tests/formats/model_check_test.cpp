@@ -88,7 +88,7 @@ std::vector<Fault> motion_faults() {
        [](M m) { m.segments[0].last_key = 0; }},
       {"segment_shares_key_of_other_clip", "segments: segment 1 does not start",
        [](M m) { m.segments[1].first_key = 1; }},
-      {"segment_ends_before_it_starts", "segments: segment 0 does not reach",
+      {"segment_goes_nowhere", "segments: segment 1 does not reach",
        [](M m) {
          m.segments[0] = {0, 0};
          m.segments[1] = {0, 0};
