@@ -115,9 +115,10 @@ ModelStorage adversarial_model(std::uint32_t seed) {
     model.local_from_world.push_back(
         adversarial_map(model.local_from_world.back(), any_number(random), random));
   const std::vector<std::uint32_t> one_cluster(model.triangles.size(), 0);
+  model.segments = {{0, sequence.key_count() - 1}};
   model.fuzzy_boxes = fuzzy_boxes(
       sequence, make_cluster_members(model.triangles, one_cluster, 1, model.vertex_count),
-      model.local_from_world);
+      model.local_from_world, model.segments[0]);
   return model;
 }
 
@@ -175,7 +176,8 @@ TEST(FuzzyBoxes, AreAsSmallAsTheTrianglesOfRigidParts) {
   for (const Affine3d& a : world_from_local) maps.push_back(to_float(inverse(a)));
   const std::vector<std::uint32_t> one_cluster(mesh.triangles.size(), 0);
   const std::vector<Aabb> boxes = fuzzy_boxes(
-      sequence, make_cluster_members(mesh.triangles, one_cluster, 1, sequence.vertex_count), maps);
+      sequence, make_cluster_members(mesh.triangles, one_cluster, 1, sequence.vertex_count), maps,
+      {0, 11});
   for (std::size_t t = 0; t < boxes.size(); ++t) {
     Aabbd rest;
     for (const std::uint32_t v : mesh.triangles[t].v) rest.extend(mesh.vertices[v]);
