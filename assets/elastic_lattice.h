@@ -55,6 +55,7 @@ class ElasticLattice {
   const std::vector<Vec3d>& rest() const { return rest_; }
   std::vector<Vec3d>& positions() { return positions_; }
   std::vector<Vec3d>& velocities() { return velocities_; }
+  const std::vector<LatticeSpring>& springs() const { return springs_; }
   std::vector<LatticeSpring>& springs() { return springs_; }
   const std::vector<LatticeFace>& faces() const { return faces_; }
   double cell() const { return cell_; }

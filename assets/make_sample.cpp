@@ -4,7 +4,10 @@
 #include <vector>
 
 #include "assets/ball_asset.h"
+#include "assets/chicken_asset.h"
+#include "assets/cloth_asset.h"
 #include "assets/cow_asset.h"
+#include "assets/dolphin_asset.h"
 #include "assets/glb_writer.h"
 #include "assets/hand_asset.h"
 #include "common/base/error.h"
@@ -21,7 +24,8 @@ struct SequenceSample {
   SampleSequence (*make)();
 };
 constexpr SceneSample kScenes[] = {{"hand", make_hand_scene}, {"ball", make_ball_scene}};
-constexpr SequenceSample kSequences[] = {{"cow", make_cow}};
+constexpr SequenceSample kSequences[] = {
+    {"chicken", make_chicken}, {"cow", make_cow}, {"dolphin", make_dolphin}, {"cloth", make_cloth}};
 
 void report(const std::string& path, const std::vector<std::uint8_t>& bytes) {
   std::printf("%s: %zu bytes\n", path.c_str(), bytes.size());
@@ -60,6 +64,6 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "make_sample: %s\n", error.what());
     return error.exit_status();
   }
-  std::fprintf(stderr, "usage: make_sample hand|ball|cow FOLDER\n");
+  std::fprintf(stderr, "usage: make_sample hand|ball|chicken|cow|dolphin|cloth FOLDER\n");
   return static_cast<int>(mdk::ErrorCode::kUsage);
 }
