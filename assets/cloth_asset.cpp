@@ -1,6 +1,6 @@
 // A square grid of particles under constraints along its sides, its diagonals and over two cells,
 // which are met one after the other in a fixed order (XPBD, Macklin, Müller and Chentanez 2016, one
-// iteration per small step).
+// iteration there and back per small step).
 #include "assets/cloth_asset.h"
 
 #include <algorithm>
@@ -48,9 +48,11 @@ class Cloth {
       velocities_[i] += Vec3d{0, -7, 0} * kStepSeconds;
       positions_[i] += velocities_[i] * kStepSeconds;
     }
+    positions_[kLeftCorner] = hand(-1, seconds + kStepSeconds);
+    positions_[kRightCorner] = hand(1, seconds + kStepSeconds);
+    // There and back, so that a pull travels both ways.
     for (const Link& link : links_) relax(link);
-    positions_[kLeftCorner] = hand(-1, seconds);
-    positions_[kRightCorner] = hand(1, seconds);
+    for (std::size_t i = links_.size(); i-- > 0;) relax(links_[i]);
     for (std::size_t i = 0; i < positions_.size(); ++i)
       velocities_[i] = (positions_[i] - before[i]) * (1 / kStepSeconds);
   }
@@ -77,14 +79,18 @@ class Cloth {
     link(0, 2, kBending);
   }
 
+  /// Inverse mass: what is held does not give way.
+  static double give(std::uint32_t v) { return v == kLeftCorner || v == kRightCorner ? 0 : 1; }
+
   void relax(const Link& link) {
     const Vec3d apart = positions_[link.b] - positions_[link.a];
     const double now = length(apart);
     if (now == 0) return;
     const double softness = link.compliance / (kStepSeconds * kStepSeconds);
-    const Vec3d push = apart * ((now - link.rest) / ((2 + softness) * now));
-    positions_[link.a] += push;
-    positions_[link.b] += -push;
+    const double give_a = give(link.a), give_b = give(link.b);
+    const Vec3d push = apart * ((now - link.rest) / ((give_a + give_b + softness) * now));
+    positions_[link.a] += push * give_a;
+    positions_[link.b] += push * -give_b;
   }
 
   /// Air takes each cell along, as far as it stands across the flow.

@@ -5,7 +5,8 @@
 
 namespace mdk {
 
-/// 204 keys, 30 a second: it falls askew, gives way, topples, is kicked up again and falls once more.
+/// 204 keys, 30 a second: it falls askew, gives way, topples, is kicked up again and falls once
+/// more.
 SampleSequence make_cow();
 
 }  // namespace mdk

@@ -36,9 +36,9 @@ double trunk(const Vec3d& p) {
 double blade(const Vec3d& p, const Vec3d& root, const Vec3d& tip, const Vec3d& normal,
              double width) {
   const Basis basis = basis_along(root, tip - root, normal);
-  const double thin = 0.3;
+  const double thin = 0.36;
   const Vec3d q = basis.to_local(p);
-  return thin * rounded_cone({q.x, q.y, q.z / thin}, width, 0.3 * width, length(tip - root));
+  return thin * rounded_cone({q.x, q.y, q.z / thin}, width, 0.42 * width, length(tip - root));
 }
 
 double dolphin(const Vec3d& p) {
@@ -72,7 +72,7 @@ ByteColor color(const Vec3d& p) {
 double edge_length(const Vec3d& p) {
   const double fin = std::max({smooth_step(0.2, 0.3, p.y), smooth_step(0.2, 0.28, std::abs(p.z)),
                                smooth_step(-0.95, -1.1, p.x), smooth_step(0.75, 0.95, p.x)});
-  return 0.0262 - 0.0090 * fin;
+  return 0.0274 - 0.0094 * fin;
 }
 
 /// Rest lengths of a body bent about z by a wave and about y by a steady turn.

@@ -5,7 +5,7 @@
 #include "assets/hand_shape.h"
 #include "assets/hand_skeleton.h"
 #include "assets/isotropic_remesher.h"
-#include "assets/quaternion.h"
+#include "assets/rig.h"
 #include "assets/skin_weights.h"
 #include "assets/surface_mesher.h"
 
@@ -42,64 +42,21 @@ GlbMesh make_mesh(const HandSkeleton& skeleton) {
   return mesh;
 }
 
-/// From model space into the joint's rest basis, column by column, in metres.
-std::array<double, 16> inverse_bind_matrix(const Basis& b) {
-  const Vec3d t = b.vector_to_local(b.origin) * -kMetresPerUnit;
-  return {b.x.x, b.y.x, b.z.x, 0, b.x.y, b.y.y, b.z.y, 0, b.x.z, b.y.z, b.z.z, 0, t.x, t.y, t.z, 1};
-}
-
-Quaternion rest_rotation(const HandSkeleton& skeleton, const HandJoint& joint) {
-  return rotation_between(joint.parent < 0 ? Basis{} : skeleton.rest(joint.parent), joint.rest);
-}
-
-void add_skeleton(const HandSkeleton& skeleton, GlbScene& scene) {
-  GlbSkin skin;
-  for (const HandJoint& joint : skeleton.joints) {
-    const Basis parent = joint.parent < 0 ? Basis{} : skeleton.rest(joint.parent);
-    skin.joints.push_back(static_cast<int>(scene.nodes.size()));
-    skin.inverse_bind_matrices.push_back(inverse_bind_matrix(joint.rest));
-    GlbNode node;
-    node.name = joint.name;
-    node.parent = joint.parent;
-    node.translation = parent.to_local(joint.rest.origin) * kMetresPerUnit;
-    node.rotation = rest_rotation(skeleton, joint);
-    scene.nodes.push_back(std::move(node));
-  }
-  scene.skins.push_back(std::move(skin));
-}
-
-GlbClip make_clip(const HandSkeleton& skeleton, const HandClip& clip) {
-  GlbClip out;
-  out.name = clip.name;
-  out.times = clip.times;
-  for (std::size_t j = 0; j < skeleton.joints.size(); ++j) {
-    const Quaternion rest = rest_rotation(skeleton, skeleton.joints[j]);
-    GlbTrack track;
-    track.node = static_cast<int>(j);
-    for (const auto& pose : clip.poses) {
-      const Quaternion q = rest * joint_rotation(pose[j]);
-      track.values.push_back({q.x, q.y, q.z, q.w});
-    }
-    out.tracks.push_back(std::move(track));
-  }
-  return out;
-}
-
 }  // namespace
 
 GlbScene make_hand_scene() {
   const HandSkeleton skeleton = make_hand_skeleton();
   GlbScene scene;
   scene.copyright = "Apache-2.0";
-  add_skeleton(skeleton, scene);  // node j is joint j
+  add_rig(skeleton.joints, kMetresPerUnit, scene);
   scene.meshes.push_back(make_mesh(skeleton));
   GlbNode body;
   body.name = "hand_mesh";
   body.mesh = 0;
   body.skin = 0;
   scene.nodes.push_back(std::move(body));
-  for (const HandClip& clip : make_hand_clips(skeleton))
-    scene.clips.push_back(make_clip(skeleton, clip));
+  for (const RigClip& clip : make_hand_clips(skeleton))
+    add_rig_clip(skeleton.joints, clip, kMetresPerUnit, scene);
   return scene;
 }
 

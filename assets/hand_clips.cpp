@@ -59,8 +59,8 @@ class Script {
            to[i]);
   }
 
-  HandClip play(const std::string& name, double seconds) const {
-    HandClip clip{name, {}, {}};
+  RigClip play(const std::string& name, double seconds) const {
+    RigClip clip{name, {}, {}, {}};
     const int keys = static_cast<int>(std::lround(seconds * kKeysPerSecond)) + 1;
     for (int k = 0; k < keys; ++k) {
       const double t = k / kKeysPerSecond;
@@ -89,7 +89,7 @@ class Script {
   std::vector<std::vector<Move>> moves_;
 };
 
-HandClip grasp(const HandSkeleton& skeleton) {
+RigClip grasp(const HandSkeleton& skeleton) {
   Script script(skeleton, kOpen);
   constexpr std::size_t kThumb = 0;
   for (std::size_t d = 1; d < kDigits; ++d) {
@@ -110,7 +110,7 @@ HandClip grasp(const HandSkeleton& skeleton) {
   return script.play("grasp", 2);
 }
 
-HandClip count(const HandSkeleton& skeleton) {
+RigClip count(const HandSkeleton& skeleton) {
   Script script(skeleton, kFist);
   constexpr std::size_t kThumb = 0, kLittle = 4;
   constexpr double kBeat = 0.62, kFirst = 0.2, kClose = 3.35;
@@ -134,14 +134,25 @@ HandClip count(const HandSkeleton& skeleton) {
   return script.play("count", 4);
 }
 
-}  // namespace
-
-std::vector<HandClip> make_hand_clips(const HandSkeleton& skeleton) {
-  return {grasp(skeleton), count(skeleton)};
+/// As long as the animation of GFW06: four fingers roll in one after another.
+RigClip beckon(const HandSkeleton& skeleton) {
+  Script script(skeleton, kOpen);
+  for (std::size_t d = 1; d < kDigits; ++d) {
+    const double wave = 0.06 * static_cast<double>(kDigits - 1 - d);
+    script.move_digit(d, 0.02 + wave, 0.36, kFist[d]);
+    script.move_digit(d, 0.48 + 0.04 * static_cast<double>(d - 1), 0.34, kOpen[d]);
+  }
+  script.turn(skeleton.hand, 0.0, 0.4, {22, 0, 3});
+  script.turn(skeleton.hand, 0.45, 0.5, {});
+  script.turn(skeleton.forearm_twist, 0.0, 0.5, {0, -18, 0});
+  script.turn(skeleton.forearm_twist, 0.5, 0.42, {});
+  return script.play("beckon", 29 / kKeysPerSecond);
 }
 
-Quaternion joint_rotation(const JointAngles& degrees) {
-  return rotation_about(2, degrees.z) * rotation_about(0, degrees.x) * rotation_about(1, degrees.y);
+}  // namespace
+
+std::vector<RigClip> make_hand_clips(const HandSkeleton& skeleton) {
+  return {grasp(skeleton), count(skeleton), beckon(skeleton)};
 }
 
 }  // namespace mdk

@@ -42,7 +42,7 @@ const std::array<DigitPlan, kDigits> kPlans = {{
      kFront},
 }};
 
-int add_joint(HandSkeleton& skeleton, HandJoint joint) {
+int add_joint(HandSkeleton& skeleton, RigJoint joint) {
   skeleton.joints.push_back(std::move(joint));
   return static_cast<int>(skeleton.joints.size()) - 1;
 }
@@ -60,7 +60,7 @@ void add_digit(HandSkeleton& skeleton, int digit, int parent) {
 }
 
 /// A joint whose bone points from `from` to the first joint of `digit`.
-HandJoint metacarpal(const char* name, int parent, const Vec3d& from, int digit) {
+RigJoint metacarpal(const char* name, int parent, const Vec3d& from, int digit) {
   const Vec3d bone = kPlans[static_cast<std::size_t>(digit)].origin - from;
   return {name, parent, basis_along(from, bone, kFront), length(bone)};
 }

@@ -3,27 +3,17 @@
 #pragma once
 
 #include <array>
-#include <string>
 #include <vector>
 
-#include "assets/distance_field.h"
+#include "assets/rig.h"
 
 namespace mdk {
-
-/// A joint at rest. Turning about its x bends the bone towards the palm, about z spreads it
-/// sideways, about y twists it.
-struct HandJoint {
-  std::string name;
-  int parent = -1;
-  Basis rest;         ///< in space; y runs along the bone
-  double length = 0;  ///< of the bone, to where the next joint sits (or to the tip)
-};
 
 inline constexpr int kDigits = 5;     ///< thumb, index, middle, ring, little
 inline constexpr int kPhalanges = 3;  ///< joints of a digit; the thumb's first is its metacarpal
 
 struct HandSkeleton {
-  std::vector<HandJoint> joints;  ///< parents first; joint 0 is the root
+  std::vector<RigJoint> joints;  ///< parents first; joint 0 is the root
   int forearm = 0, forearm_twist = 0, hand = 0;
   int ring_metacarpal = 0, little_metacarpal = 0;             ///< these cup the palm
   std::array<std::array<int, kPhalanges>, kDigits> digits{};  ///< from the palm to the tip

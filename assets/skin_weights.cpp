@@ -40,7 +40,7 @@ class Weighting {
 
   /// 0 before joint `joint`, 1 beyond it, along the mean of its bone and its parent's.
   double beyond(int joint, const Vec3d& p, double width) const {
-    const HandJoint& j = skeleton_.joints[static_cast<std::size_t>(joint)];
+    const RigJoint& j = skeleton_.joints[static_cast<std::size_t>(joint)];
     const Vec3d axis = normalized(j.rest.y + skeleton_.rest(j.parent).y);
     return smooth_step(-width, width, dot(p - j.rest.origin, axis));
   }

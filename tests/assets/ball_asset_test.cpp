@@ -22,7 +22,7 @@ const char* const kPath = MDK_SOURCE_DIR "/assets/ball.glb";
 
 TEST(BallAsset, CommittedFileIsWhatTheProgramMakes) {
   EXPECT_EQ(difference(parse_glb(read_bytes(kPath)), parse_glb(encode_glb(make_ball_scene()))), "")
-      << "run make_ball and commit the new assets/ball.glb";
+      << "run \"make_sample ball assets\" and commit the new assets/ball.glb";
 }
 
 TEST(BallAsset, IsSmall) { EXPECT_LT(read_bytes(kPath).size(), 300'000u); }

@@ -48,7 +48,7 @@ std::string digit_of(const std::string& joint) {
 
 TEST(HandAsset, CommittedFileIsWhatTheProgramMakes) {
   EXPECT_EQ(difference(committed(), parse_glb(encode_glb(make_hand_scene()))), "")
-      << "run make_hand and commit the new assets/hand.glb";
+      << "run \"make_sample hand assets\" and commit the new assets/hand.glb";
 }
 
 TEST(HandAsset, HasThePromisedSize) {
@@ -149,12 +149,14 @@ class HandMotion : public ::testing::Test {
 };
 PoseSequence* HandMotion::sequence_ = nullptr;
 
-TEST_F(HandMotion, HasTwoClipsOfThirtyKeysASecond) {
-  ASSERT_EQ(sequence_->clips.size(), 2u);
+TEST_F(HandMotion, HasThreeClipsOfThirtyKeysASecond) {
+  ASSERT_EQ(sequence_->clips.size(), 3u);
   EXPECT_EQ(sequence_->clips[0].name, "grasp");
   EXPECT_EQ(sequence_->clips[0].key_count, 61u);
   EXPECT_EQ(sequence_->clips[1].name, "count");
   EXPECT_EQ(sequence_->clips[1].key_count, 121u);
+  EXPECT_EQ(sequence_->clips[2].name, "beckon");
+  EXPECT_EQ(sequence_->clips[2].key_count, 30u);
 }
 
 TEST_F(HandMotion, EndsEachClipWhereItBeganAndMovesBetween) {
