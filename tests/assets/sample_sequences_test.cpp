@@ -85,7 +85,7 @@ TEST(SampleSequences, TheClothIsASheetThatNeitherTearsNorStretchesMuch) {
   for (const auto& pose : cloth.poses)
     for (const auto& t : cloth.triangles)
       longest = std::max(longest, length(pose[t[0]] - pose[t[1]]));
-  EXPECT_LT(longest, 3 * 2.0 / 67);
+  EXPECT_LT(longest, 4 * 2.0 / 67) << "next to a corner that is jerked";
   EXPECT_EQ(hash_of(encode_pc2(cloth)), 0x0be05384eba55388u);
 }
 
