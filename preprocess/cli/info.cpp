@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "formats/mdk_view.h"
+#include "preprocess/cli/box_areas.h"
 #include "preprocess/cli/commands.h"
 #include "preprocess/cli/common_options.h"
 #include "preprocess/cli/number_text.h"
@@ -19,6 +20,7 @@ using Json = nlohmann::ordered_json;
 struct InfoArguments {
   std::string input;
   bool json = false;
+  bool areas = false;
   MachineOptions machine;
 };
 
@@ -54,7 +56,7 @@ Json json_of_segments(const Model& model) {
   return segments;
 }
 
-void print_json(const MdkFile& file) {
+void print_json(const MdkFile& file, const InfoArguments& arguments) {
   const Model& model = file.model();
   Json textures = Json::array();
   for (const Texture& texture : model.textures)
@@ -63,7 +65,7 @@ void print_json(const MdkFile& file) {
   for (const MdkSectionInfo& section : file.sections())
     sections.push_back({{"name", section.name}, {"bytes", section.bytes}});
   const ClusterSizes sizes = cluster_sizes(model);
-  const Json info = {
+  Json info = {
       {"schema", "mdprep-info/1"},
       {"file", file.path()},
       {"file_bytes", file.file_bytes()},
@@ -84,6 +86,11 @@ void print_json(const MdkFile& file) {
       {"textures", textures},
       {"sections", sections},
   };
+  if (arguments.areas) {
+    const BoxAreas areas = measure_box_areas(model);
+    info["fuzzy_area"] = areas.fuzzy;
+    info["tight_area"] = areas.tight;
+  }
   std::cout << info.dump(2, ' ', false, Json::error_handler_t::replace) << "\n";
 }
 
@@ -116,7 +123,7 @@ std::string segments_text(const Model& model) {
   return text + (model.segment_count() > kShown ? ", ...)" : ")");
 }
 
-void print_facts(const MdkFile& file) {
+void print_facts(const MdkFile& file, const InfoArguments& arguments) {
   const Model& model = file.model();
   const ClusterSizes sizes = cluster_sizes(model);
   const Clip& rest_clip = model.clips[clip_of_key(model, model.rest_key)];
@@ -138,6 +145,11 @@ void print_facts(const MdkFile& file) {
   facts.add_row({"bounds", point_text(model.bounds.lo) + " to " + point_text(model.bounds.hi)});
   facts.add_row({"materials", std::to_string(model.materials.size())});
   facts.add_row({"textures", textures_text(model)});
+  if (arguments.areas) {
+    const BoxAreas areas = measure_box_areas(model);
+    facts.add_row({"fuzzy boxes", fixed_text(areas.fuzzy, 2) + " areas of the mesh's box, " +
+                                      fixed_text(areas.tight, 2) + " if they were tight"});
+  }
   facts.print(std::cout);
 }
 
@@ -163,9 +175,9 @@ void run_info(const InfoArguments& arguments) {
   const MachineLimits limits(arguments.machine);
   const MdkFile file(arguments.input);
   if (arguments.json) {
-    print_json(file);
+    print_json(file, arguments);
   } else {
-    print_facts(file);
+    print_facts(file, arguments);
     print_tables(file);
   }
 }
@@ -178,11 +190,15 @@ CommandBody add_info_command(CLI::App& command) {
       ->required()
       ->type_name("");
   command.add_flag("--json", arguments->json, "Print JSON (mdprep-info/1) instead of tables.");
+  command.add_flag(
+      "--areas", arguments->areas,
+      "Also measure how loose the fuzzy boxes are: their area in the world, summed, in\n"
+      "areas of the mesh's box, and that of the triangles' own boxes; medians over keys.");
   add_machine_options(command, arguments->machine);
   command.footer(
       "Example:\n"
       "  mdprep info hand.mdk\n"
-      "  mdprep info hand.mdk --json");
+      "  mdprep info hand.mdk --json --areas");
   return [arguments] { run_info(*arguments); };
 }
 

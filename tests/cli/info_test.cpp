@@ -44,6 +44,23 @@ TEST_F(Info, JsonTellsWhatWasBaked) {
   EXPECT_LT(section_bytes, file_bytes);
 }
 
+TEST_F(Info, AreasTellHowLooseTheBoxesAre) {
+  const Json plain = Json::parse(run_mdprep({"info", baked(), "--json"}).out);
+  EXPECT_FALSE(plain.contains("fuzzy_area"));
+  const Json info = Json::parse(run_mdprep({"info", baked(), "--json", "--areas"}).out);
+  EXPECT_GT(info["tight_area"], 0.1);
+  EXPECT_GE(info["fuzzy_area"], info["tight_area"]) << "boxes for all times hold those of one";
+  // One cluster that does not move has far looser boxes.
+  ASSERT_EQ(
+      run_mdprep({"bake", source(), "-o", folder_.file("one.mdk"), "--decompose", "none"}).status,
+      0);
+  const Json one =
+      Json::parse(run_mdprep({"info", folder_.file("one.mdk"), "--json", "--areas"}).out);
+  EXPECT_DOUBLE_EQ(one["tight_area"], info["tight_area"]);
+  EXPECT_GT(one["fuzzy_area"], 2 * info["fuzzy_area"].get<double>());
+  EXPECT_THAT(run_mdprep({"info", baked(), "--areas"}).out, HasSubstr("if they were tight"));
+}
+
 TEST_F(Info, TablesTellTheSameToPeople) {
   const Outcome run = run_mdprep({"info", baked()});
   ASSERT_EQ(run.status, 0) << run.err;
