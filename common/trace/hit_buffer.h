@@ -11,12 +11,16 @@ inline constexpr std::uint32_t kTileSide = 16;
 inline constexpr std::uint32_t kTilePixels = kTileSide * kTileSide;
 inline constexpr std::uint32_t kNoHit = 0xffffffffu;
 
-/// One tile's closest hits so far; pixel (i, j) of the tile stands at j * kTileSide + i.
+/// One tile's closest hits; pixel (i, j) of the tile stands at j * kTileSide + i.
 struct alignas(64) TileHits {
   float t[kTilePixels];
   std::uint32_t triangle[kTilePixels];
+  bool written = true;  ///< to be set by who writes a hit; false: no ray of the tile hits
 
+  /// No ray hits. A tile that is clear is left alone: most of a picture stays background.
   void clear() {
+    if (!written) return;
+    written = false;
     for (std::uint32_t i = 0; i < kTilePixels; ++i) {
       t[i] = std::numeric_limits<float>::infinity();
       triangle[i] = kNoHit;

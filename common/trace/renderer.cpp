@@ -77,14 +77,12 @@ const FrameStats& Renderer::trace(const FrameRequest& request) {
 
   s.hits.resize(request.width, request.height);
   const PixelFromWorld pixel_from_world = make_pixel_from_world(rays);
-  const FrustumBasis world_basis = make_frustum_basis(rays);
   const bool counting = request.counting == Counting::kOn;
   for (Worker& worker : s.workers) worker.counters = {};
   parallel_chunks(s.hits.tile_count(), 8, [&](std::size_t begin, std::size_t end) {
     Worker& worker = s.workers.local();
     for (std::size_t i = begin; i < end; ++i) {
-      const TileRays tile{&rays, &pixel_from_world, &world_basis, s.hits.tile_left(i),
-                          s.hits.tile_top(i)};
+      const TileRays tile{&rays, &pixel_from_world, s.hits.tile_left(i), s.hits.tile_top(i)};
       s.hits.tile(i).clear();
       s.technique->trace(tile, s.hits.tile(i), worker.scratch,
                          counting ? &worker.counters : nullptr);

@@ -8,6 +8,8 @@ namespace mdk {
 
 std::span<const TechniqueInfo> technique_table() {
   static constexpr TechniqueInfo kTable[] = {
+      {"fuzzy-bvh", "Fuzzy BVH", "motion clusters, one hierarchy each for all poses", "Lo09 §4.3",
+       make_fuzzy_bvh},
       {"fuzzy-kdtree", "Fuzzy kd-tree", "motion clusters, one kd-tree each for all poses", "GFW06",
        make_fuzzy_kdtree},
       {"static-kdtree", "Static kd-tree", "a kd-tree built ahead for every key", "GFW06 Table 1",

@@ -146,7 +146,7 @@ CommandBody add_bench_command(CLI::App& command) {
       "pose + update + trace + shade. Counts come from a pass of their own.\n"
       "Example:\n"
       "  mdprep bench hand.mdk --size 1024x1024 --threads 1 --json hand.json\n"
-      "  mdprep bench *.mdk --techniques fuzzy-kdtree,rebuild-bvh --frames 50");
+      "  mdprep bench *.mdk --techniques fuzzy-bvh,rebuild-bvh --frames 50");
   return [arguments] { run_bench(*arguments); };
 }
 

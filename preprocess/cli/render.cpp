@@ -29,7 +29,7 @@ using Json = nlohmann::ordered_json;
 
 struct RenderArguments {
   std::string input, output, frames, time, clip, stats;
-  std::string technique = "fuzzy-kdtree";
+  std::string technique{technique_table().front().id};
   ViewOptions view;
   MachineOptions machine;
   MessageOptions messages;
@@ -232,7 +232,7 @@ CommandBody add_render_command(CLI::App& command) {
   command
       .add_option("--technique", arguments->technique,
                   "One of " + technique_ids() +
-                      "\n(default: fuzzy-kdtree). The picture is the "
+                      "\n(default: fuzzy-bvh). The picture is the "
                       "same with each.")
       ->type_name("ID");
   add_view_options(command, arguments->view);

@@ -18,9 +18,21 @@ TEST(HitBuffer, CountsPixelsOfTheImageAndNotThoseOfTilesPastItsEdge) {
   HitBuffer hits = make_hits(35, 19);
   ASSERT_EQ(hits.tile_count(), 6u);
   EXPECT_EQ(count_hits(hits), 0u);
-  for (std::size_t i = 0; i < hits.tile_count(); ++i)
+  for (std::size_t i = 0; i < hits.tile_count(); ++i) {
+    hits.tile(i).written = true;
     for (std::uint32_t& triangle : hits.tile(i).triangle) triangle = 3;
+  }
   EXPECT_EQ(count_hits(hits), 35u * 19u);
+}
+
+TEST(HitBuffer, ClearingForgetsHitsWrittenBefore) {
+  HitBuffer hits = make_hits(20, 20);
+  hits.tile(1).written = true;
+  hits.tile(1).triangle[0] = 5;
+  hits.tile(1).t[0] = 2;
+  hits.tile(1).clear();
+  EXPECT_EQ(hits.triangle(16, 0), kNoHit);
+  EXPECT_EQ(hits.t(16, 0), std::numeric_limits<float>::infinity());
 }
 
 TEST(HitBuffer, MismatchIsAnotherTriangleOrAnotherBitOfDepth) {

@@ -36,21 +36,30 @@ class Trial {
   int mismatches(const Camera& camera) {
     const PinholeRays rays = make_pinhole_rays(camera, kWidth, kHeight);
     const PixelFromWorld pixel_from_world = make_pixel_from_world(rays);
-    const FrustumBasis basis = make_frustum_basis(rays);
     const TriangleSoup soup{triangles_.data(), positions_.data(),
                             static_cast<std::uint32_t>(triangles_.size())};
-    const Bvh bvh = build_bvh(boxes_, {.max_leaf = 1});
+    const FrustumBasis basis = make_frustum_basis(rays);
+    const WideBvh bvh = collapse(build_bvh(boxes_, {.max_leaf = 1}));
+    std::vector<TriangleBlock> blocks;
+    append_blocks(bvh, triangles_, 0, blocks);
+    const BvhView bvh_view{bvh.nodes, 0, make_frustum_forms(basis, bvh.nodes[0].box())};
+    ProjectionCache cache;
+    cache.begin_frame(blocks.size());
     const KdTree kd = build_kd_tree(boxes_, 0, {.intersect_cost = 50.0f});
+    const KdView kd_view{kd.view(), make_frustum_forms(basis, kd.bounds)};
     int different = 0;
     for (std::uint32_t y = 0; y < kHeight; y += kTileSide)
       for (std::uint32_t x = 0; x < kWidth; x += kTileSide) {
-        const TileRays tile{&rays, &pixel_from_world, &basis, x, y};
+        const TileRays tile{&rays, &pixel_from_world, x, y};
         trace_tile_brute_force(tile, soup, cleared(hits_[0]), scratch_, nullptr);
-        trace_tile_bvh(tile, bvh, soup, cleared(hits_[1]), scratch_, nullptr);
-        trace_tile_kd(tile, kd.view(), soup, cleared(hits_[2]), scratch_, nullptr);
+        trace_tile_bvh(tile, bvh_view, {blocks, positions_.data(), nullptr}, cleared(hits_[1]),
+                       scratch_, nullptr);
+        trace_tile_bvh(tile, bvh_view, {blocks, positions_.data(), &cache}, cleared(hits_[2]),
+                       scratch_, nullptr);
+        trace_tile_kd(tile, kd_view, soup, cleared(hits_[3]), scratch_, nullptr);
         for (std::uint32_t i = 0; i < kTilePixels; ++i) {
           hit_count_ += hits_[0].triangle[i] != kNoHit;
-          different += !same(i, hits_[1]) + !same(i, hits_[2]);
+          different += !same(i, hits_[1]) + !same(i, hits_[2]) + !same(i, hits_[3]);
         }
       }
     return different;
@@ -71,7 +80,7 @@ class Trial {
   std::vector<Triangle> triangles_;
   std::vector<Vec3f> positions_;
   std::vector<Aabb> boxes_;
-  std::array<TileHits, 3> hits_;
+  std::array<TileHits, 4> hits_;
   TileScratch scratch_;
   int hit_count_ = 0;
 };
@@ -194,7 +203,6 @@ TEST_P(TileKernels, CornersThatAreNotNumbersAreNeverHit) {
   const Camera camera{.eye = {0, 0, 3}, .target = {0, 0, 0}};
   const PinholeRays rays = make_pinhole_rays(camera, kWidth, kHeight);
   const PixelFromWorld pixel_from_world = make_pixel_from_world(rays);
-  const FrustumBasis basis = make_frustum_basis(rays);
   for (const float bad : {nan, inf, -inf}) {
     const std::vector<Vec3f> positions = {{bad, 0, 0}, {1, -1, 0}, {-1, -1, 0}, {0, bad, bad}};
     const std::vector<Triangle> triangles = {{{0, 1, 2}}, {{1, 0, 2}}, {{3, 1, 2}}, {{0, 0, 3}}};
@@ -202,7 +210,7 @@ TEST_P(TileKernels, CornersThatAreNotNumbersAreNeverHit) {
     TileHits hits;
     hits.clear();
     TileScratch scratch;
-    const TileRays tile{&rays, &pixel_from_world, &basis, 16, 32};
+    const TileRays tile{&rays, &pixel_from_world, 16, 32};
     trace_tile_brute_force(tile, soup, hits, scratch, nullptr);
     for (const std::uint32_t triangle : hits.triangle) EXPECT_EQ(triangle, kNoHit);
   }

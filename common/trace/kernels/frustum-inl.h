@@ -1,13 +1,14 @@
-// A tile's frustum as eight linear forms, tested against boxes all at once. Compiled once per
-// instruction set: no include guard in the usual sense, see tile_kernels.cpp.
+// A tile's frustum, tested against one box or against all children of a node at once. Compiled once
+// per instruction set: no include guard in the usual sense, see tile_kernels.cpp.
 //
-// A form f(p) = n.p + w is negative where the frustum is not: four for the sides (at the outer
-// edges of the tile's pixels, half a pixel past their centres), one for "nearer than the farthest
-// hit so far", one for "in front of the eye". A box is outside if the largest value of one form
-// over it is negative. Every w includes a slack that covers the rounding of this very test, so that
-// no box that holds part of a hit triangle is ever dropped.
-#include <algorithm>
-#include <cmath>
+// A side f(p) = n.p + w is negative where the frustum is not. Its largest value over a box stands
+// at one corner, which n's signs pick once per tile:
+//
+//      lo.y +-------+ n            far corner of a box: per axis hi where n >= 0, else lo;
+//           |       |  \           n_x far.x + n_y far.y + n_z far.z + w < 0: box outside.
+//           +-------+   side       A node's boxes stand side by side: a vector tests all.
+//
+// The depth over a box is least at the corner the depth's gradient picks in the same way.
 #include <limits>
 
 #include "common/trace/kernels/tile_kernels.h"
@@ -24,80 +25,91 @@ namespace mdk {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-inline constexpr int kForms = 8;  // two are unused and always 0
-inline constexpr int kNearForm = 4;
-inline constexpr int kFrontForm = 5;
-
 class TileFrustum {
  public:
-  /// The frustum of `tile` in the basis `basis`, for boxes inside `bounds`.
-  TileFrustum(const TileRays& tile, const FrustumBasis& basis, const Aabb& bounds) {
-    for (std::size_t k = 0; k < 3; ++k)
-      magnitude_[k] = std::max(std::abs(bounds.lo[k]), std::abs(bounds.hi[k]));
-    const double side = basis.det < 0 ? -1.0 : 1.0;
-    const double x0 = tile.x, x1 = x0 + kTileSide, y0 = tile.y, y1 = y0 + kTileSide;
-    const double error = basis.plane_error;
-    set_form(0, (basis.corner_x_dv + basis.du_x_dv * x0) * -side, basis.origin, error);
-    set_form(1, (basis.corner_x_dv + basis.du_x_dv * x1) * side, basis.origin, error);
-    set_form(2, (basis.du_x_corner + basis.du_x_dv * y0) * -side, basis.origin, error);
-    set_form(3, (basis.du_x_corner + basis.du_x_dv * y1) * side, basis.origin, error);
-    const Vec3d depth = basis.du_x_dv * (1.0 / basis.det);  // t of a point p is depth.(p - origin)
-    set_form(kNearForm, -depth, basis.origin, basis.depth_error);
-    set_form(kFrontForm, depth, basis.origin, basis.depth_error);
-    near_offset_ = w_[kNearForm];
-    for (std::size_t k = 0; k < 3; ++k) eye_[k] = basis.origin[k];
-    set_farthest(std::numeric_limits<float>::infinity());
+  TileFrustum(const FrustumForms& forms, const TileRays& tile) : forms_(forms) {
+    const hn::CappedTag<float, 4 * kSides> d;
+    const float x = static_cast<float>(tile.x), y = static_cast<float>(tile.y);
+    constexpr float kSide = kTileSide;
+    alignas(64)
+        const float place[4 * kSides] = {x, x + kSide, y, y + kSide, x, x + kSide, y, y + kSide,
+                                         x, x + kSide, y, y + kSide, x, x + kSide, y, y + kSide};
+    for (std::size_t i = 0; i < 4 * kSides; i += hn::Lanes(d))
+      hn::Store(hn::MulAdd(hn::Load(d, forms.step + i), hn::Load(d, place + i),
+                           hn::Load(d, forms.base + i)),
+                d, side_ + i);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      for (std::size_t k = 0; k < kSides; ++k)
+        far_row_[axis][k] = static_cast<std::uint8_t>(2 * axis + (side_[axis * kSides + k] >= 0));
+      near_row_[axis] = static_cast<std::uint8_t>(2 * axis + (forms.depth[axis] < 0));
+    }
   }
 
-  /// From now on boxes whose every point is farther than `t` are outside.
-  void set_farthest(float t) { w_[kNearForm] = near_usable_ ? near_offset_ + t : 0.0f; }
-
-  /// Whether the box is outside; false where in doubt.
-  HWY_INLINE bool misses(const Vec3f& lo, const Vec3f& hi) const {
-    const hn::CappedTag<float, kForms> d;
-    for (std::size_t i = 0; i < kForms; i += hn::Lanes(d)) {
-      // max over the box of n.p = sum over axes of max(n lo, n hi)
-      const auto nx = hn::Load(d, nx_ + i), ny = hn::Load(d, ny_ + i), nz = hn::Load(d, nz_ + i);
-      const auto x = hn::Max(hn::Mul(nx, hn::Set(d, lo.x)), hn::Mul(nx, hn::Set(d, hi.x)));
-      const auto y = hn::Max(hn::Mul(ny, hn::Set(d, lo.y)), hn::Mul(ny, hn::Set(d, hi.y)));
-      const auto z = hn::Max(hn::Mul(nz, hn::Set(d, lo.z)), hn::Mul(nz, hn::Set(d, hi.z)));
-      const auto value = hn::Add(hn::Add(x, y), hn::Add(z, hn::Load(d, w_ + i)));
-      if (!hn::AllFalse(d, hn::Lt(value, hn::Zero(d)))) return true;
+  /// Bit c is set unless child c is outside, or farther than `farthest` as a whole; false bits are
+  /// certain, set ones are not. `depth` gets each child's least depth.
+  HWY_INLINE std::uint32_t meet(const WideBvhNode& node, float farthest,
+                                float (&depth)[kBvhWidth]) const {
+    const hn::CappedTag<float, kBvhWidth> d;
+    std::uint32_t met = 0;
+    for (std::size_t i = 0; i < kBvhWidth; i += hn::Lanes(d)) {
+      const auto row = [&](std::size_t r) { return hn::Load(d, node.bounds[r] + i); };
+      const auto largest = [&](std::size_t k) {
+        const auto z = hn::MulAdd(hn::Set(d, side_[2 * kSides + k]), row(far_row_[2][k]),
+                                  hn::Set(d, side_[3 * kSides + k]));
+        const auto yz = hn::MulAdd(hn::Set(d, side_[kSides + k]), row(far_row_[1][k]), z);
+        return hn::MulAdd(hn::Set(d, side_[k]), row(far_row_[0][k]), yz);
+      };
+      const auto least = hn::Min(hn::Min(largest(0), largest(1)), hn::Min(largest(2), largest(3)));
+      const auto least_depth =
+          depth_at(d, row(near_row_[0]), row(near_row_[1]), row(near_row_[2]), forms_.depth_offset);
+      hn::Store(least_depth, d, depth + i);
+      auto outside = hn::Or(hn::Lt(least, hn::Zero(d)), hn::Gt(least_depth, hn::Set(d, farthest)));
+      if (!forms_.in_front) {
+        const auto deepest = depth_at(d, row(near_row_[0] ^ 1u), row(near_row_[1] ^ 1u),
+                                      row(near_row_[2] ^ 1u), forms_.front_offset);
+        outside = hn::Or(outside, hn::Lt(deepest, hn::Zero(d)));
+      }
+      alignas(8) std::uint8_t bits[8] = {};
+      hn::StoreMaskBits(d, hn::Not(outside), bits);
+      met |= (bits[0] & ((1u << hn::Lanes(d)) - 1)) << i;
     }
-    return false;
+    return met & ((1u << node.count) - 1);
+  }
+
+  /// Whether the box is outside or farther than `farthest`; false where in doubt.
+  HWY_INLINE bool misses(const Vec3f& lo, const Vec3f& hi, float farthest) const {
+    const hn::CappedTag<float, kSides> d;
+    const auto at = [&](std::size_t axis) {
+      const auto n = hn::Load(d, side_ + axis * kSides);
+      return hn::Max(hn::Mul(n, hn::Set(d, lo[axis])), hn::Mul(n, hn::Set(d, hi[axis])));
+    };
+    const auto value = hn::Add(hn::Add(at(0), at(1)), hn::Add(at(2), hn::Load(d, side_ + 12)));
+    if (!hn::AllFalse(d, hn::Lt(value, hn::Zero(d)))) return true;
+    const Vec3f& n = forms_.depth;
+    const auto depth = [&](const Vec3f& a, const Vec3f& b) {
+      return (n.x < 0 ? b.x : a.x) * n.x + (n.y < 0 ? b.y : a.y) * n.y +
+             (n.z < 0 ? b.z : a.z) * n.z;
+    };
+    if (depth(lo, hi) + forms_.depth_offset > farthest) return true;
+    return !forms_.in_front && depth(hi, lo) + forms_.front_offset < 0;
   }
 
   /// Whether rays of the tile meet the cell below a split plane before the one above it.
-  bool below_first(std::uint32_t axis, float split) const { return eye_[axis] <= split; }
-
-  /// Depth along the rays of a point, up to a constant: orders boxes front to back.
-  float depth_order(const Vec3f& p) const {
-    return nx_[kFrontForm] * p.x + ny_[kFrontForm] * p.y + nz_[kFrontForm] * p.z;
-  }
+  bool below_first(std::uint32_t axis, float split) const { return forms_.eye[axis] <= split; }
 
  private:
-  void set_form(int form, const Vec3d& n, const Vec3d& through, double n_error) {
-    // In float, n, the products, the sums and w lose about 6 x 2^-24 in all, and the triangle
-    // test's own view of the corners (offset from the eye, pixel space) as much again: 2^-20 holds
-    // both.
-    double slack = 0;
-    for (std::size_t k = 0; k < 3; ++k)
-      slack += (std::abs(n[k]) * 0x1p-20 + n_error) * (magnitude_[k] + std::abs(through[k]));
-    const double w = -dot(n, through) + slack;
-    const double largest = std::max({std::abs(n.x), std::abs(n.y), std::abs(n.z), std::abs(w)});
-    const bool usable = largest < 1e30;  // a basis near singular: such a form tells nothing
-    nx_[form] = usable ? static_cast<float>(n.x) : 0.0f;
-    ny_[form] = usable ? static_cast<float>(n.y) : 0.0f;
-    nz_[form] = usable ? static_cast<float>(n.z) : 0.0f;
-    w_[form] = usable ? static_cast<float>(w) : 0.0f;
-    if (form == kNearForm) near_usable_ = usable;
+  template <class D, class V>
+  HWY_INLINE V depth_at(D d, V x, V y, V z, float offset) const {
+    const Vec3f& n = forms_.depth;
+    return hn::MulAdd(
+        hn::Set(d, n.x), x,
+        hn::MulAdd(hn::Set(d, n.y), y, hn::MulAdd(hn::Set(d, n.z), z, hn::Set(d, offset))));
   }
 
-  alignas(64) float nx_[kForms] = {}, ny_[kForms] = {}, nz_[kForms] = {}, w_[kForms] = {};
-  double magnitude_[3];
-  double eye_[3];
-  float near_offset_ = 0;
-  bool near_usable_ = true;
+  const FrustumForms& forms_;
+  alignas(64) float side_[4 * kSides];
+  std::uint8_t far_row_[3][kSides];
+  std::uint8_t near_row_[3];
 };
 
 }  // namespace HWY_NAMESPACE

@@ -1,5 +1,5 @@
 // How a tile walks a structure: cells and boxes are tested with the tile's frustum, near ones
-// first; triangles met in leaves are collected and tested a vector at a time.
+// first; triangles met in leaves are tested sixteen at a time.
 #include "common/trace/kernels/tile_kernels.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -7,19 +7,18 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 // after highway.h
+#include "common/trace/kernels/block_tester-inl.h"
 #include "common/trace/kernels/frustum-inl.h"
-#include "common/trace/kernels/triangle_batch-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace mdk {
 namespace HWY_NAMESPACE {
 
 /// Walks a kd-tree (inverse frustum culling, RSH05): the cell shrinks on the way down, and is
-/// tested whole. Calls visit(reference) for what stands in the leaves met, near leaves first;
-/// `farthest` gives the depth past which nothing matters any more.
-template <class Visit, class Farthest>
-void walk_kd(const KdTreeView& tree, TileFrustum& frustum, TraceCounters* counters,
-             const Farthest& farthest, const Visit& visit) {
+/// tested whole. Calls visit(reference) for what stands in the leaves met, near leaves first.
+template <class Counter, class Visit>
+void walk_kd(const KdTreeView& tree, const TileFrustum& frustum, const BlockTester<Counter>& tester,
+             const Visit& visit) {
   struct Entry {
     std::uint32_t node;
     Vec3f lo, hi;
@@ -30,9 +29,8 @@ void walk_kd(const KdTreeView& tree, TileFrustum& frustum, TraceCounters* counte
   stack[size++] = {0, tree.bounds.lo, tree.bounds.hi};
   while (size > 0) {
     const Entry cell = stack[--size];
-    if (counters != nullptr) ++counters->node_visits;
-    frustum.set_farthest(farthest());
-    if (frustum.misses(cell.lo, cell.hi)) continue;
+    tester.counter().nodes(1);
+    if (frustum.misses(cell.lo, cell.hi, tester.image().farthest())) continue;
     const KdNode node = tree.nodes[cell.node];
     if (node.is_leaf()) {
       for (std::uint32_t i = 0; i < node.ref_count(); ++i) visit(tree.refs[node.first_ref() + i]);
@@ -46,6 +44,55 @@ void walk_kd(const KdTreeView& tree, TileFrustum& frustum, TraceCounters* counte
     const bool below_first = frustum.below_first(node.axis(), node.split());
     stack[size++] = below_first ? above : below;
     stack[size++] = below_first ? below : above;
+  }
+}
+
+/// A child that waits to be visited, and the depth its box begins at.
+struct Waiting {
+  float depth;
+  WideBvhChild child;
+};
+
+/// Adds the children in `met`, nearest on top. Returns the new size.
+HWY_INLINE std::size_t push_nearest_last(const WideBvhNode& node, std::uint32_t met,
+                                         const float (&depth)[kBvhWidth], Waiting* stack,
+                                         std::size_t size) {
+  const std::size_t bottom = size;
+  for (; met != 0; met &= met - 1) {
+    const auto c = static_cast<std::size_t>(__builtin_ctz(met));
+    const Waiting entry{depth[c], node.child[c]};
+    std::size_t at = size++;
+    for (; at > bottom && stack[at - 1].depth < entry.depth; --at) stack[at] = stack[at - 1];
+    stack[at] = entry;
+  }
+  return size;
+}
+
+/// Every level leaves all but one child on the stack.
+inline constexpr std::size_t kWideStack = std::size_t{kMaxBvhDepth + 1} * kBvhWidth;
+
+/// Calls visit(leaf) for the leaves met, near ones first.
+template <class Counter, class Visit>
+void walk_bvh(std::span<const WideBvhNode> nodes, const TileFrustum& frustum,
+              const BlockTester<Counter>& tester, const Visit& visit) {
+  if (nodes.empty()) return;
+  Waiting stack[kWideStack];
+  alignas(64) float depth[kBvhWidth];
+  std::size_t size = 0;
+  const auto open = [&](const WideBvhNode& node) {
+    tester.counter().nodes(node.count);
+    const std::uint32_t met = frustum.meet(node, tester.image().farthest(), depth);
+    size = push_nearest_last(node, met, depth, stack, size);
+  };
+  open(nodes[0]);
+  while (size > 0) {
+    const Waiting next = stack[--size];
+    if (next.depth > tester.image().farthest()) continue;
+    if (next.child.is_leaf()) {
+      visit(next.child.index());
+    } else {
+      open(nodes[next.child.index()]);
+    }
   }
 }
 
@@ -65,75 +112,115 @@ class Mailbox {
   std::uint32_t serial_;
 };
 
-void BruteForce(const TileRays& tile, const TriangleSoup& soup, TileHits& hits, TileScratch&,
-                TraceCounters* counters) {
-  TriangleBatch batch(tile, soup, hits, counters);
+template <class Counter>
+void brute_force(const TriangleSoup& soup, BlockTester<Counter>& tester, TileScratch& scratch) {
+  TriangleBatch<Counter> batch(tester, soup.triangles, scratch.block);
   for (std::uint32_t i = 0; i < soup.triangle_count; ++i) batch.push(i);
   batch.flush();
 }
 
-void Kd(const TileRays& tile, const KdTreeView& tree, const TriangleSoup& soup, TileHits& hits,
-        TileScratch& scratch, TraceCounters* counters) {
+template <class Counter>
+void kd(const TileRays& tile, const KdView& tree, const TriangleSoup& soup,
+        BlockTester<Counter>& tester, TileScratch& scratch) {
   scratch.begin_tile(soup.triangle_count, 0);
   Mailbox triangles(scratch.triangle_stamps, scratch.serial);
-  TriangleBatch batch(tile, soup, hits, counters);
-  TileFrustum frustum(tile, *tile.world_basis, tree.bounds);
-  walk_kd(
-      tree, frustum, counters, [&] { return batch.farthest(); },
-      [&](std::uint32_t triangle) {
-        if (triangles.is_new(triangle)) batch.push(triangle);
-      });
+  TriangleBatch<Counter> batch(tester, soup.triangles, scratch.block);
+  walk_kd(tree.tree, TileFrustum(tree.forms, tile), tester, [&](std::uint32_t triangle) {
+    if (triangles.is_new(triangle)) batch.push(triangle);
+  });
   batch.flush();
 }
 
-void TwoLevelKd(const TileRays& tile, const KdTreeView& top, std::span<const ClusterView> clusters,
-                const TriangleSoup& soup, TileHits& hits, TileScratch& scratch,
-                TraceCounters* counters) {
+template <class Counter>
+void two_level_kd(const TileRays& tile, const KdView& top, std::span<const KdView> clusters,
+                  const TriangleSoup& soup, BlockTester<Counter>& tester, TileScratch& scratch) {
   scratch.begin_tile(soup.triangle_count, clusters.size());
   Mailbox seen_triangles(scratch.triangle_stamps, scratch.serial);
   Mailbox seen_clusters(scratch.cluster_stamps, scratch.serial);
-  TriangleBatch batch(tile, soup, hits, counters);
-  const auto farthest = [&] { return batch.farthest(); };
+  TriangleBatch<Counter> batch(tester, soup.triangles, scratch.block);
   const auto enter = [&](std::uint32_t c) {
     if (!seen_clusters.is_new(c)) return;
-    const ClusterView& cluster = clusters[c];
-    TileFrustum local(tile, cluster.basis, cluster.tree.bounds);
-    local.set_farthest(batch.farthest());
-    if (local.misses(cluster.tree.bounds.lo, cluster.tree.bounds.hi)) return;
-    if (counters != nullptr) ++counters->clusters_entered;
-    walk_kd(cluster.tree, local, counters, farthest, [&](std::uint32_t triangle) {
+    const KdView& cluster = clusters[c];
+    const TileFrustum local(cluster.forms, tile);
+    const Aabb& bounds = cluster.tree.bounds;
+    if (local.misses(bounds.lo, bounds.hi, tester.image().farthest())) return;
+    tester.counter().clusters(1);
+    walk_kd(cluster.tree, local, tester, [&](std::uint32_t triangle) {
       if (seen_triangles.is_new(triangle)) batch.push(triangle);
     });
   };
-  TileFrustum frustum(tile, *tile.world_basis, top.bounds);
-  walk_kd(top, frustum, counters, farthest, enter);
+  walk_kd(top.tree, TileFrustum(top.forms, tile), tester, enter);
   batch.flush();
 }
 
-void BvhWalk(const TileRays& tile, const Bvh& bvh, const TriangleSoup& soup, TileHits& hits,
-             TileScratch&, TraceCounters* counters) {
-  if (bvh.nodes.empty()) return;
-  TriangleBatch batch(tile, soup, hits, counters);
-  TileFrustum frustum(tile, *tile.world_basis, bvh.nodes[0].box());
-  std::uint32_t stack[kMaxBvhDepth + 2];
-  std::size_t size = 0;
-  stack[size++] = 0;
-  while (size > 0) {
-    const BvhNode& node = bvh.nodes[stack[--size]];
-    if (counters != nullptr) ++counters->node_visits;
-    frustum.set_farthest(batch.farthest());
-    if (frustum.misses(node.lo, node.hi)) continue;
-    if (node.is_leaf()) {
-      for (std::uint32_t i = 0; i < node.count; ++i) batch.push(bvh.refs[node.first + i]);
-      continue;
-    }
-    const BvhNode& a = bvh.nodes[node.first];
-    const BvhNode& b = bvh.nodes[node.first + 1];
-    const bool a_first = frustum.depth_order(a.lo + a.hi) <= frustum.depth_order(b.lo + b.hi);
-    stack[size++] = a_first ? node.first + 1 : node.first;
-    stack[size++] = a_first ? node.first : node.first + 1;
+template <class Counter>
+void test_leaf(const BlockSoup& soup, std::uint32_t number, BlockTester<Counter>& tester,
+               TileScratch& scratch) {
+  const TriangleBlock& block = soup.blocks[number];
+  if (soup.cache != nullptr) {
+    tester.test(block, number, *soup.cache, scratch.block);
+  } else {
+    tester.test(block, scratch.block);
   }
-  batch.flush();
+}
+
+template <class Counter>
+void bvh(const TileRays& tile, const BvhView& tree, const BlockSoup& soup,
+         BlockTester<Counter>& tester, TileScratch& scratch) {
+  walk_bvh(tree.nodes, TileFrustum(tree.forms, tile), tester,
+           [&](std::uint32_t leaf) { test_leaf(soup, tree.first_leaf + leaf, tester, scratch); });
+}
+
+template <class Counter>
+void two_level_bvh(const TileRays& tile, const TopLevelView& top, const BlockSoup& soup,
+                   BlockTester<Counter>& tester, TileScratch& scratch) {
+  walk_bvh(top.tree.nodes, TileFrustum(top.tree.forms, tile), tester, [&](std::uint32_t leaf) {
+    tester.counter().clusters(1);
+    bvh(tile, top.clusters[top.cluster_of_leaf[leaf]], soup, tester, scratch);
+  });
+}
+
+/// Traces with counting or without, then stores what was hit.
+template <class Walk>
+void with_tester(const TileRays& tile, const Vec3f* positions, TileHits& hits,
+                 TraceCounters* counters, const Walk& walk) {
+  const auto run = [&](auto counter) {
+    BlockTester<decltype(counter)> tester(tile, positions, counter);
+    walk(tester);
+    if (!tester.image().empty()) tester.image().store(hits);
+  };
+  if (counters != nullptr) {
+    run(Counting{*counters});
+  } else {
+    run(NoCounting{});
+  }
+}
+
+void BruteForce(const TileRays& tile, const TriangleSoup& soup, TileHits& hits,
+                TileScratch& scratch, TraceCounters* counters) {
+  with_tester(tile, soup.positions, hits, counters,
+              [&](auto& tester) { brute_force(soup, tester, scratch); });
+}
+void Kd(const TileRays& tile, const KdView& tree, const TriangleSoup& soup, TileHits& hits,
+        TileScratch& scratch, TraceCounters* counters) {
+  with_tester(tile, soup.positions, hits, counters,
+              [&](auto& tester) { kd(tile, tree, soup, tester, scratch); });
+}
+void TwoLevelKd(const TileRays& tile, const KdView& top, std::span<const KdView> clusters,
+                const TriangleSoup& soup, TileHits& hits, TileScratch& scratch,
+                TraceCounters* counters) {
+  with_tester(tile, soup.positions, hits, counters,
+              [&](auto& tester) { two_level_kd(tile, top, clusters, soup, tester, scratch); });
+}
+void OneLevelBvh(const TileRays& tile, const BvhView& tree, const BlockSoup& soup, TileHits& hits,
+                 TileScratch& scratch, TraceCounters* counters) {
+  with_tester(tile, soup.positions, hits, counters,
+              [&](auto& tester) { bvh(tile, tree, soup, tester, scratch); });
+}
+void TwoLevelBvh(const TileRays& tile, const TopLevelView& top, const BlockSoup& soup,
+                 TileHits& hits, TileScratch& scratch, TraceCounters* counters) {
+  with_tester(tile, soup.positions, hits, counters,
+              [&](auto& tester) { two_level_bvh(tile, top, soup, tester, scratch); });
 }
 
 }  // namespace HWY_NAMESPACE
@@ -146,24 +233,51 @@ namespace mdk {
 HWY_EXPORT(BruteForce);
 HWY_EXPORT(Kd);
 HWY_EXPORT(TwoLevelKd);
-HWY_EXPORT(BvhWalk);
+HWY_EXPORT(OneLevelBvh);
+HWY_EXPORT(TwoLevelBvh);
 
 void trace_tile_brute_force(const TileRays& tile, const TriangleSoup& soup, TileHits& hits,
                             TileScratch& scratch, TraceCounters* counters) {
   HWY_DYNAMIC_DISPATCH(BruteForce)(tile, soup, hits, scratch, counters);
 }
-void trace_tile_kd(const TileRays& tile, const KdTreeView& tree, const TriangleSoup& soup,
+void trace_tile_kd(const TileRays& tile, const KdView& tree, const TriangleSoup& soup,
                    TileHits& hits, TileScratch& scratch, TraceCounters* counters) {
   HWY_DYNAMIC_DISPATCH(Kd)(tile, tree, soup, hits, scratch, counters);
 }
-void trace_tile_bvh(const TileRays& tile, const Bvh& bvh, const TriangleSoup& soup, TileHits& hits,
-                    TileScratch& scratch, TraceCounters* counters) {
-  HWY_DYNAMIC_DISPATCH(BvhWalk)(tile, bvh, soup, hits, scratch, counters);
-}
-void trace_tile_two_level_kd(const TileRays& tile, const KdTreeView& top,
-                             std::span<const ClusterView> clusters, const TriangleSoup& soup,
+void trace_tile_two_level_kd(const TileRays& tile, const KdView& top,
+                             std::span<const KdView> clusters, const TriangleSoup& soup,
                              TileHits& hits, TileScratch& scratch, TraceCounters* counters) {
   HWY_DYNAMIC_DISPATCH(TwoLevelKd)(tile, top, clusters, soup, hits, scratch, counters);
+}
+void trace_tile_bvh(const TileRays& tile, const BvhView& tree, const BlockSoup& soup,
+                    TileHits& hits, TileScratch& scratch, TraceCounters* counters) {
+  HWY_DYNAMIC_DISPATCH(OneLevelBvh)(tile, tree, soup, hits, scratch, counters);
+}
+void trace_tile_two_level_bvh(const TileRays& tile, const TopLevelView& top, const BlockSoup& soup,
+                              TileHits& hits, TileScratch& scratch, TraceCounters* counters) {
+  HWY_DYNAMIC_DISPATCH(TwoLevelBvh)(tile, top, soup, hits, scratch, counters);
+}
+
+PixelFromWorld make_pixel_from_world(const PinholeRays& rays) {
+  // The inverse of the matrix with columns (du, dv, corner).
+  const Vec3d corner = to_double(rays.corner), du = to_double(rays.du), dv = to_double(rays.dv);
+  const Vec3d rows[3] = {cross(dv, corner), cross(corner, du), cross(du, dv)};
+  const double det = dot(corner, rows[2]);
+  PixelFromWorld result;
+  result.origin = rays.origin;
+  for (int i = 0; i < 3; ++i)
+    for (std::size_t j = 0; j < 3; ++j) result.m[i][j] = static_cast<float>(rows[i][j] / det);
+  return result;
+}
+
+void TileScratch::begin_tile(std::size_t triangles, std::size_t clusters) {
+  triangle_stamps.resize(triangles, 0);
+  cluster_stamps.resize(clusters, 0);
+  if (++serial == 0) {  // wrapped round: old stamps would look new
+    triangle_stamps.assign(triangles, 0);
+    cluster_stamps.assign(clusters, 0);
+    serial = 1;
+  }
 }
 
 }  // namespace mdk

@@ -9,11 +9,13 @@
 #include "common/math/aabb.h"
 #include "common/math/affine3.h"
 #include "common/motion/model.h"
-#include "common/structures/bvh.h"
 #include "common/structures/kd_tree.h"
+#include "common/structures/wide_bvh.h"
 #include "common/trace/camera.h"
 #include "common/trace/frame_stats.h"
 #include "common/trace/hit_buffer.h"
+#include "common/trace/kernels/frustum_forms.h"
+#include "common/trace/kernels/triangle_block.h"
 
 namespace mdk {
 
@@ -24,25 +26,12 @@ struct PixelFromWorld {
   Vec3f origin;
 };
 
-/// The linear forms that bound tiles in one basis (world, or a cluster's local basis): products of
-/// the pinhole's vectors, in double, once per basis and frame. See docs/kernels.md, "Frusta".
-struct FrustumBasis {
-  Vec3d origin;
-  Vec3d corner_x_dv, du_x_corner, du_x_dv;  ///< cross products
-  double det = 0;          ///< of (corner, du, dv); its sign tells a mirrored basis
-  double plane_error = 0;  ///< bounds the rounding of a side plane's normal, per component
-  double depth_error = 0;  ///< the same for the gradient of the depth
-};
-
-FrustumBasis make_frustum_basis(const PinholeRays& world_rays);
-FrustumBasis make_frustum_basis(const PinholeRays& world_rays, const Affine3d& local_from_world);
 PixelFromWorld make_pixel_from_world(const PinholeRays& rays);
 
 /// One tile of 16x16 pixels with its upper left pixel at (x, y), a multiple of 16.
 struct TileRays {
   const PinholeRays* rays;
   const PixelFromWorld* pixel_from_world;
-  const FrustumBasis* world_basis;
   std::uint32_t x, y;
 };
 
@@ -53,29 +42,53 @@ struct TriangleSoup {
   std::uint32_t triangle_count;
 };
 
+/// The present triangles leaf by leaf.
+struct BlockSoup {
+  std::span<const TriangleBlock> blocks;
+  const Vec3f* positions;
+  ProjectionCache* cache;  ///< what this frame has projected; null: projected anew for every tile
+};
+
 /// Per-thread memory of the kernels: which triangles and clusters this tile has already seen.
 struct TileScratch {
   std::vector<std::uint32_t> triangle_stamps, cluster_stamps;
   std::uint32_t serial = 0;
+  ProjectedBlock block;
 
   /// Begins a tile: afterwards nothing has been seen. Grows the stamps on first use.
   void begin_tile(std::size_t triangles, std::size_t clusters);
 };
 
-/// A cluster as the two-level kernel meets it: its fuzzy tree and the rays' frustum in its basis.
-struct ClusterView {
+/// A kd-tree and the frame's frusta in its basis.
+struct KdView {
   KdTreeView tree;
-  FrustumBasis basis;
+  FrustumForms forms;
+};
+
+/// A hierarchy and the frame's frusta in its basis; its leaf i is block `first_leaf` + i.
+struct BvhView {
+  std::span<const WideBvhNode> nodes;
+  std::uint32_t first_leaf;
+  FrustumForms forms;
+};
+
+/// A hierarchy over clusters, one a leaf.
+struct TopLevelView {
+  const BvhView& tree;
+  std::span<const std::uint32_t> cluster_of_leaf;
+  std::span<const BvhView> clusters;
 };
 
 void trace_tile_brute_force(const TileRays& tile, const TriangleSoup& soup, TileHits& hits,
                             TileScratch& scratch, TraceCounters* counters);
-void trace_tile_kd(const TileRays& tile, const KdTreeView& tree, const TriangleSoup& soup,
+void trace_tile_kd(const TileRays& tile, const KdView& tree, const TriangleSoup& soup,
                    TileHits& hits, TileScratch& scratch, TraceCounters* counters);
-void trace_tile_bvh(const TileRays& tile, const Bvh& bvh, const TriangleSoup& soup, TileHits& hits,
-                    TileScratch& scratch, TraceCounters* counters);
-void trace_tile_two_level_kd(const TileRays& tile, const KdTreeView& top,
-                             std::span<const ClusterView> clusters, const TriangleSoup& soup,
+void trace_tile_two_level_kd(const TileRays& tile, const KdView& top,
+                             std::span<const KdView> clusters, const TriangleSoup& soup,
                              TileHits& hits, TileScratch& scratch, TraceCounters* counters);
+void trace_tile_bvh(const TileRays& tile, const BvhView& tree, const BlockSoup& soup,
+                    TileHits& hits, TileScratch& scratch, TraceCounters* counters);
+void trace_tile_two_level_bvh(const TileRays& tile, const TopLevelView& top, const BlockSoup& soup,
+                              TileHits& hits, TileScratch& scratch, TraceCounters* counters);
 
 }  // namespace mdk

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "common/structures/bvh.h"
+#include "common/structures/wide_bvh.h"
 #include "common/trace/techniques/makers.h"
 
 namespace mdk {
@@ -13,26 +13,27 @@ class BvhTechnique : public Technique {
  public:
   explicit BvhTechnique(const Model& model) : boxes_(model.triangle_count()) {}
 
-  void update(const PosedMesh& mesh) final {
-    soup_ = soup_of(mesh);
-    triangle_boxes(mesh, boxes_);
-    follow();
-  }
+  void update(const PosedMesh& mesh) final;
+  void set_view(const PinholeRays& rays) final;
   void trace(const TileRays& tile, TileHits& hits, TileScratch& scratch,
-             TraceCounters* counters) const final {
-    trace_tile_bvh(tile, bvh_, soup_, hits, scratch, counters);
-  }
-  std::size_t structure_bytes() const final { return bvh_.bytes() + boxes_.size() * sizeof(Aabb); }
+             TraceCounters* counters) const final;
+  std::size_t structure_bytes() const final;
 
  protected:
-  /// Makes bvh_ valid for boxes_, the present triangles' boxes.
-  virtual void follow() = 0;
+  /// Makes the hierarchy valid for boxes_, the present triangles' boxes.
+  virtual void follow(const Model& model) = 0;
+
+  /// The hierarchy gets other leaves.
+  void set_tree(WideBvh&& bvh, const Model& model);
 
   std::vector<Aabb> boxes_;
-  Bvh bvh_;
+  WideBvh bvh_;
 
  private:
-  TriangleSoup soup_{};
+  std::vector<TriangleBlock> blocks_;
+  const Vec3f* positions_ = nullptr;
+  BvhView view_{};
+  mutable ProjectionCache cache_;
 };
 
 }  // namespace mdk

@@ -30,12 +30,14 @@ class FuzzyKdTechnique final : public Technique {
     const std::span<const Affine3f> from = model_.key_maps(at_.key0),
                                     to = model_.key_maps(at_.key1);
     for (std::size_t c = 0; c < clusters_.size(); ++c)
-      clusters_[c].basis = make_frustum_basis(rays, interpolate(from[c], to[c], at_.s));
+      clusters_[c].forms = make_frustum_forms(
+          make_frustum_basis(rays, interpolate(from[c], to[c], at_.s)), clusters_[c].tree.bounds);
+    top_view_ = {top_.view(), make_frustum_forms(make_frustum_basis(rays), top_.bounds)};
   }
 
   void trace(const TileRays& tile, TileHits& hits, TileScratch& scratch,
              TraceCounters* counters) const override {
-    trace_tile_two_level_kd(tile, top_.view(), clusters_, soup_, hits, scratch, counters);
+    trace_tile_two_level_kd(tile, top_view_, clusters_, soup_, hits, scratch, counters);
   }
 
   std::size_t structure_bytes() const override {
@@ -50,7 +52,8 @@ class FuzzyKdTechnique final : public Technique {
   TriangleSoup soup_{};
   std::vector<Aabb> world_boxes_;
   KdTree top_;
-  std::vector<ClusterView> clusters_;
+  KdView top_view_;
+  std::vector<KdView> clusters_;
 };
 
 }  // namespace

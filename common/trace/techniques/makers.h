@@ -8,6 +8,7 @@
 namespace mdk {
 
 std::unique_ptr<Technique> make_brute_force(const Model& model);
+std::unique_ptr<Technique> make_fuzzy_bvh(const Model& model);
 std::unique_ptr<Technique> make_fuzzy_kdtree(const Model& model);
 std::unique_ptr<Technique> make_rebuild_bvh(const Model& model);
 std::unique_ptr<Technique> make_refit_bvh(const Model& model);

@@ -9,7 +9,7 @@ class RebuildBvhTechnique final : public BvhTechnique {
   using BvhTechnique::BvhTechnique;
 
  private:
-  void follow() override { bvh_ = build_bvh(boxes_, {.bins = 16}); }
+  void follow(const Model& model) override { set_tree(build_wide_bvh(boxes_, 16), model); }
 };
 
 }  // namespace

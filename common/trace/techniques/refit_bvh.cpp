@@ -13,11 +13,11 @@ class RefitBvhTechnique final : public BvhTechnique {
     PosedMesh rest(mesh.model());
     rest.set_time(at_key(mesh.model().rest_key));
     triangle_boxes(rest, boxes_);
-    bvh_ = build_bvh(boxes_, {.bins = 1024});
+    set_tree(build_wide_bvh(boxes_, 1024), mesh.model());
   }
 
  private:
-  void follow() override { refit_bvh(bvh_, boxes_); }
+  void follow(const Model&) override { refit_wide_bvh(bvh_, boxes_); }
 };
 
 }  // namespace

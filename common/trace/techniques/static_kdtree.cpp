@@ -27,11 +27,14 @@ class StaticKdTechnique final : public Technique {
     soup_ = soup_of(mesh);
     const KeyInterval& at = mesh.at();
     const std::map<Moment, KdTree>& trees = at.s == 0.0f ? at_keys_ : between_keys_;
-    present_ = &trees.at({at.key0, at.key1, at.s});
+    present_.tree = trees.at({at.key0, at.key1, at.s}).view();
+  }
+  void set_view(const PinholeRays& rays) override {
+    present_.forms = make_frustum_forms(make_frustum_basis(rays), present_.tree.bounds);
   }
   void trace(const TileRays& tile, TileHits& hits, TileScratch& scratch,
              TraceCounters* counters) const override {
-    trace_tile_kd(tile, present_->view(), soup_, hits, scratch, counters);
+    trace_tile_kd(tile, present_, soup_, hits, scratch, counters);
   }
   std::size_t structure_bytes() const override {
     std::size_t bytes = 0;
@@ -45,7 +48,7 @@ class StaticKdTechnique final : public Technique {
 
   TriangleSoup soup_{};
   std::map<Moment, KdTree> at_keys_, between_keys_;
-  const KdTree* present_ = nullptr;
+  KdView present_;
 };
 
 }  // namespace

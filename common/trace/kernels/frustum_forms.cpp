@@ -1,0 +1,109 @@
+#include "common/trace/kernels/frustum_forms.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace mdk {
+namespace {
+
+/// Past this, products with coordinates might overflow: such a form tells nothing.
+constexpr double kLargestForm = 1e30;
+
+FrustumBasis make_basis(const Vec3d& origin, const Vec3d& corner, const Vec3d& du,
+                        const Vec3d& dv) {
+  FrustumBasis basis;
+  basis.origin = origin;
+  basis.corner_x_dv = cross(corner, dv);
+  basis.du_x_corner = cross(du, corner);
+  basis.du_x_dv = cross(du, dv);
+  basis.det = dot(corner, basis.du_x_dv);
+
+  // The products cancel where a map is near singular; what is lost is relative to their factors.
+  constexpr double kRounding = 0x1p-46;
+  const double c = length(corner), u = length(du), v = length(dv);
+  basis.plane_error = kRounding * (c * (u + v) + kMaxImageSide * u * v);
+  const double det = std::abs(basis.det);
+  basis.depth_error = kRounding * (u * v + length(basis.du_x_dv) / det * c * u * v) / det;
+  return basis;
+}
+
+Vec3d absolute(const Vec3d& v) { return {std::abs(v.x), std::abs(v.y), std::abs(v.z)}; }
+
+double largest_of(const Vec3d& v) { return std::max({v.x, v.y, v.z}); }
+
+/// Sides through the eye whose normal is `base` + place * `step`.
+void set_side(FrustumForms& forms, int side, const Vec3d& base, const Vec3d& step,
+              const FrustumBasis& basis, const Vec3d& reach) {
+  // Relative to |base| + place |step|, in units of 2^-24: a float normal is off by 4 (two
+  // roundings, a product, a sum), its offset by as much; products and sums over a box by 5; the
+  // triangle test's own view of the corners (offset from the eye, pixel space) by 6. 2^-19 is 32.
+  constexpr double kRounding = 0x1p-19;
+  const double error = basis.plane_error * (reach.x + reach.y + reach.z);
+  const double w_base = -dot(base, basis.origin) + kRounding * dot(absolute(base), reach) + error;
+  const double w_step = -dot(step, basis.origin) + kRounding * dot(absolute(step), reach);
+  const bool usable =
+      largest_of(absolute(base) + absolute(step) * double{kMaxImageSide}) < kLargestForm &&
+      std::abs(w_base) + std::abs(w_step) * kMaxImageSide < kLargestForm;
+  for (std::size_t axis = 0; axis < 4; ++axis) {
+    const double b = axis < 3 ? base[axis] : w_base, s = axis < 3 ? step[axis] : w_step;
+    const std::size_t i = axis * kSides + static_cast<std::size_t>(side);
+    forms.base[i] = usable ? static_cast<float>(b) : 0.0f;
+    forms.step[i] = usable ? static_cast<float>(s) : 0.0f;
+  }
+}
+
+void set_depth(FrustumForms& forms, const FrustumBasis& basis, const Aabb& bounds,
+               const Vec3d& reach) {
+  const Vec3d depth = basis.du_x_dv * (1.0 / basis.det);  // t of a point p is depth.(p - origin)
+  const double offset = -dot(depth, basis.origin);
+  const double slack = dot(absolute(depth) * 0x1p-19 + Vec3d{1, 1, 1} * basis.depth_error, reach);
+  const bool usable =
+      largest_of(absolute(depth)) < kLargestForm && std::abs(offset) + slack < kLargestForm;
+  if (!usable) {
+    forms.depth = {0, 0, 0};
+    forms.depth_offset = 0;
+    forms.front_offset = 0;
+    forms.in_front = true;  // for all that can be told
+    return;
+  }
+  forms.depth = to_float(depth);
+  forms.depth_offset = static_cast<float>(offset - slack);
+  forms.front_offset = static_cast<float>(offset + slack);
+  double nearest = offset - slack;
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    nearest += std::min(depth[axis] * bounds.lo[axis], depth[axis] * bounds.hi[axis]);
+  forms.in_front = nearest > 0;
+}
+
+}  // namespace
+
+FrustumBasis make_frustum_basis(const PinholeRays& rays) {
+  return make_basis(to_double(rays.origin), to_double(rays.corner), to_double(rays.du),
+                    to_double(rays.dv));
+}
+
+FrustumBasis make_frustum_basis(const PinholeRays& rays, const Affine3d& local_from_world) {
+  return make_basis(local_from_world.point(to_double(rays.origin)),
+                    local_from_world.vector(to_double(rays.corner)),
+                    local_from_world.vector(to_double(rays.du)),
+                    local_from_world.vector(to_double(rays.dv)));
+}
+
+FrustumForms make_frustum_forms(const FrustumBasis& basis, const Aabb& bounds) {
+  FrustumForms forms;
+  // How far coordinates and the eye reach from the origin: what roundings are relative to.
+  const Vec3d lo = absolute(to_double(bounds.lo)), hi = absolute(to_double(bounds.hi));
+  const Vec3d reach = absolute(basis.origin) +
+                      Vec3d{std::max(lo.x, hi.x), std::max(lo.y, hi.y), std::max(lo.z, hi.z)};
+  const double side = basis.det < 0 ? -1.0 : 1.0;
+  // n.(ray through X) = det (x - X) for the plane at x: left sides take -n, right sides n.
+  set_side(forms, 0, basis.corner_x_dv * -side, basis.du_x_dv * -side, basis, reach);
+  set_side(forms, 1, basis.corner_x_dv * side, basis.du_x_dv * side, basis, reach);
+  set_side(forms, 2, basis.du_x_corner * -side, basis.du_x_dv * -side, basis, reach);
+  set_side(forms, 3, basis.du_x_corner * side, basis.du_x_dv * side, basis, reach);
+  set_depth(forms, basis, bounds, reach);
+  forms.eye = to_float(basis.origin);
+  return forms;
+}
+
+}  // namespace mdk

@@ -1,0 +1,35 @@
+#include "common/trace/techniques/bvh_technique.h"
+
+namespace mdk {
+
+void BvhTechnique::update(const PosedMesh& mesh) {
+  positions_ = mesh.positions().data();
+  triangle_boxes(mesh, boxes_);
+  follow(mesh.model());
+}
+
+void BvhTechnique::set_tree(WideBvh&& bvh, const Model& model) {
+  bvh_ = std::move(bvh);
+  blocks_.clear();
+  append_blocks(bvh_, model.triangles, 0, blocks_);
+}
+
+void BvhTechnique::set_view(const PinholeRays& rays) {
+  view_.nodes = bvh_.nodes;
+  if (!bvh_.nodes.empty())
+    view_.forms = make_frustum_forms(make_frustum_basis(rays), bvh_.nodes[0].box());
+  cache_.begin_frame(blocks_.size());
+}
+
+void BvhTechnique::trace(const TileRays& tile, TileHits& hits, TileScratch& scratch,
+                         TraceCounters* counters) const {
+  trace_tile_bvh(tile, view_, {blocks_, positions_, cache_.usable() ? &cache_ : nullptr}, hits,
+                 scratch, counters);
+}
+
+std::size_t BvhTechnique::structure_bytes() const {
+  return bvh_.bytes() + boxes_.size() * sizeof(Aabb) + blocks_.size() * sizeof(TriangleBlock) +
+         cache_.bytes();
+}
+
+}  // namespace mdk
