@@ -99,7 +99,7 @@ WideBvh collapse(const Bvh& binary) { return Collapser(binary).run(); }
 
 WideBvh build_wide_bvh(std::span<const Aabb> boxes, int bins) {
   return collapse(
-      build_bvh(boxes, {.bins = bins, .intersect_cost = 0.08f, .max_leaf = kLeafItems}));
+      build_bvh(boxes, {.bins = bins, .intersect_cost = 0.06f, .max_leaf = kLeafItems}));
 }
 
 void refit_wide_bvh(WideBvh& bvh, std::span<const Aabb> boxes) {

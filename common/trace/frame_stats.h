@@ -8,7 +8,7 @@ namespace mdk {
 /// Work of tracing, summed over a frame. A tile of rays that shares one frustum counts a node once:
 /// per-ray figures are amortised, as in GFW06 Table 1.
 struct TraceCounters {
-  std::uint64_t node_visits = 0;       ///< kd traversal steps or box tests, once per tile
+  std::uint64_t node_visits = 0;       ///< kd traversal steps or boxes tested, once per tile
   std::uint64_t triangle_tests = 0;    ///< ray-triangle pairs evaluated
   std::uint64_t triangle_setups = 0;   ///< tile-triangle pairs looked at before any ray
   std::uint64_t clusters_entered = 0;  ///< tile-cluster pairs whose local box was met

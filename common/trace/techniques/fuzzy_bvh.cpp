@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "common/base/parallel.h"
+#include "common/math/affine_path.h"
 #include "common/structures/top_level.h"
 #include "common/trace/techniques/makers.h"
 
