@@ -4,6 +4,8 @@
 
 #include <cassert>
 
+#include "common/structures/bvh_bins.h"
+
 namespace mdk {
 
 void refit_bvh(Bvh& bvh, std::span<const Aabb> boxes) {
@@ -30,8 +32,10 @@ double sah_cost(const Bvh& bvh, const BvhBuildConfig& config) {
   const double root_area = area(bvh.nodes[0]);
   double cost = 0;
   for (const BvhNode& node : bvh.nodes) {
-    const double visit = node.is_leaf() ? static_cast<double>(config.intersect_cost) * node.count
-                                        : static_cast<double>(config.traversal_cost);
+    const double visit =
+        node.is_leaf()
+            ? static_cast<double>(config.intersect_cost * block_tests(node.count, config.block))
+            : static_cast<double>(config.traversal_cost);
     // A root without area is met as a whole or not at all.
     cost += root_area > 0 ? visit * area(node) / root_area : visit;
   }

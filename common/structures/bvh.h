@@ -44,12 +44,14 @@ struct BvhBuildConfig {
   int bins = 16;  ///< 2 to 1024, per axis
   float traversal_cost = 1.0f;
   float intersect_cost = 1.0f;
-  std::uint32_t max_leaf = 8;  ///< most references in a leaf, at least 1
+  std::uint32_t max_leaf = 8;  ///< most references in a leaf, 1 to 4096
+  std::uint32_t block = 1;     ///< items tested together: one test's cost for so many, or fewer
 };
 
 /// Binned SAH over box centroids (Wald 2007; Lo09 §4.1). Where bins cannot tell items apart, or
-/// would dig past kMaxBvhDepth, a node is halved instead. Boxes must be finite and not empty, fewer
-/// than 2^31. Cost: O(N log N). The result depends on the input alone.
+/// would dig past kMaxBvhDepth, or where areas are past the range of float, a node is halved
+/// instead. Boxes must be finite and not empty, fewer than 2^29. Cost: O(N log N); runs in
+/// parallel. The result depends on the input alone.
 Bvh build_bvh(std::span<const Aabb> boxes, const BvhBuildConfig& config = {});
 
 /// New boxes for the same items, bottom up (Lo09 §4.2). `boxes` has one per item, as in the build.

@@ -1,256 +1,321 @@
-// Top-down binned SAH: centroids fall into bins along each axis, planes between bins are the
-// candidates, and the items of a node are partitioned in place. Every decision depends on sets of
-// items only, never on their order within a node, so the result is the same on every machine.
+// Top-down binned SAH. Large nodes are binned and parted by all threads together, in fixed chunks;
+// what is left below them are subtrees, each built by one thread. Who builds what depends on the
+// input alone, and so does the result. Items go to and fro between two arrays: a node's are read
+// from one and written, parted, to the other.
 #include <algorithm>
-#include <array>
 #include <cassert>
-#include <cmath>
-#include <limits>
 #include <utility>
 
+#include "common/base/parallel.h"
 #include "common/structures/bvh.h"
+#include "common/structures/bvh_bins.h"
 
 namespace mdk {
 namespace {
 
-constexpr int kMaxBins = 1024;
-
-/// A box and its number, moved together so that a pass over a node reads memory in order.
-struct Item {
-  Aabb box;
-  std::uint32_t index;
-
-  /// Halved before they are added, so that the sum stays in the range of float.
-  Vec3f centroid() const { return box.lo * 0.5f + box.hi * 0.5f; }
-};
-
-struct Bin {
-  Aabb box;
-  std::uint32_t count = 0;
-};
-
-/// Which bin of an axis a centroid falls into.
-class Binning {
- public:
-  Binning() = default;
-  Binning(float lo, float hi, int bins) : lo_(lo), last_(bins - 1) {
-    // Where the range is a point, or too short or too long to be scaled, all fall into bin 0.
-    const float scale = static_cast<float>(bins) / (hi - lo);
-    if (std::isfinite(scale)) scale_ = scale;
-  }
-
-  bool usable() const { return scale_ > 0; }
-  int bins() const { return last_ + 1; }
-  int bin(float centroid) const {
-    return usable() ? std::min(static_cast<int>((centroid - lo_) * scale_), last_) : 0;
-  }
-
- private:
-  float lo_ = 0, scale_ = 0;
-  int last_ = 0;
-};
-
-struct Split {
-  double cost = std::numeric_limits<double>::infinity();
-  std::size_t axis = 0;
-  int plane = 0;  ///< items in bins below it go to the first child
-  std::uint32_t below_count = 0;
-
-  bool found() const { return below_count != 0; }
-};
-
-/// How much of the rays a box catches, next to its ancestors: by area, or by length where all boxes
-/// of a node lie on a line and no area is left to compare.
-struct Measure {
-  bool by_area;
-
-  explicit Measure(const Aabb& node) : by_area(area(node) > 0) {}
-  double operator()(const Aabb& box) const { return by_area ? area(box) : length(box); }
-
- private:
-  static double area(const Aabb& box) {
-    const Vec3d e = to_double(box.hi) - to_double(box.lo);
-    return 2 * (e.x * e.y + e.y * e.z + e.z * e.x);
-  }
-  static double length(const Aabb& box) {
-    const Vec3d e = to_double(box.hi) - to_double(box.lo);
-    return e.x + e.y + e.z;
-  }
-};
+constexpr std::uint32_t kSubtreeItems = 4096;  ///< no more: one thread's work
+constexpr std::size_t kChunkItems = 4096;
 
 /// A run of items that becomes a subtree.
-struct Range {
+struct Run {
   std::uint32_t begin, end, depth;
+  std::uint32_t source;  ///< which of the two arrays holds it
+  RunBounds bounds;
 
   std::uint32_t count() const { return end - begin; }
 };
 
-class BvhBuilder {
+/// How a node is divided: by a plane between bins, or in the middle.
+struct Division {
+  bool is_leaf = false;
+  bool halved = false;
+  SahSplit split;
+};
+
+/// The two arrays, and what decides how a run is divided: shared by all threads.
+class Items {
  public:
-  BvhBuilder(std::span<const Aabb> boxes, const BvhBuildConfig& config) : config_(config) {
-    assert(config.bins >= 2 && config.bins <= kMaxBins && config.max_leaf >= 1);
-    items_.reserve(boxes.size());
-    for (std::size_t i = 0; i < boxes.size(); ++i) {
-      assert(!boxes[i].empty());
-      items_.push_back({boxes[i], static_cast<std::uint32_t>(i)});
-    }
-    for (auto& axis_bins : bins_) axis_bins.resize(static_cast<std::size_t>(config.bins));
-    cost_below_.resize(static_cast<std::size_t>(config.bins));
+  Items(std::span<const Aabb> boxes, const BvhBuildConfig& config) : config_(config) {
+    for (auto& array : arrays_) array.resize(boxes.size());
+    parallel_chunks(boxes.size(), kChunkItems, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        assert(!boxes[i].empty());
+        arrays_[0][i] = BuildItem(boxes[i], static_cast<std::uint32_t>(i));
+      }
+    });
   }
 
-  Bvh build() {
-    if (items_.empty()) return {};
-    bvh_.nodes.reserve(2 * (items_.size() / config_.max_leaf + 1));
-    bvh_.refs.reserve(items_.size());
-    bvh_.nodes.resize(1);
-    build_node(0, {0, static_cast<std::uint32_t>(items_.size()), 0});
-    return std::move(bvh_);
+  const BvhBuildConfig& config() const { return config_; }
+  std::span<const BuildItem> of(const Run& run) const {
+    return std::span(arrays_[run.source]).subspan(run.begin, run.count());
+  }
+  std::span<BuildItem> of(const Run& run) {
+    return std::span(arrays_[run.source]).subspan(run.begin, run.count());
+  }
+  /// Where the items of `run` go.
+  BuildItem* destination(const Run& run) { return arrays_[run.source ^ 1u].data(); }
+
+  /// More bins than twice the items, or than a few per block, would tell nothing new.
+  Binning choose_bins(const Run& run) const {
+    const std::uint64_t useful = std::max<std::uint64_t>(
+        4,
+        std::min(2 * std::uint64_t{run.count()}, 8 * std::uint64_t{run.count()} / config_.block));
+    return {run.bounds.centroids,
+            static_cast<int>(std::min(useful, static_cast<std::uint64_t>(config_.bins)))};
+  }
+
+  Division divide(const Run& run, const Binning& binning, Bins& bins) const {
+    Division division{.split = bins.best_split(binning, run.bounds.box, config_)};
+    const SahSplit& split = division.split;
+    if (run.count() <= config_.max_leaf) {
+      const QuadBox& box = run.bounds.box;
+      const float whole = box.half_area() > 0 ? box.half_area() : box.edge_length();
+      const float leaf = config_.intersect_cost * block_tests(run.count(), config_.block) * whole;
+      const float parted = config_.traversal_cost * whole + config_.intersect_cost * split.cost;
+      division.is_leaf = !split.found() || parted >= leaf;
+    }
+    // A split so lopsided that its larger part might not fit under the depth limit is not taken.
+    const std::uint32_t larger = std::max(split.below_count, run.count() - split.below_count);
+    division.halved = !split.found() || larger > most_items_at(run.depth + 1);
+    return division;
+  }
+
+  bool is_surely_leaf(const Run& run) const {
+    return run.count() == 1 || run.depth == kMaxBvhDepth ||
+           (run.count() <= config_.block && run.count() <= config_.max_leaf &&
+            config_.traversal_cost >= 0);
   }
 
  private:
-  void build_node(std::uint32_t index, const Range& range) {
-    Aabb box, centroids;
-    for (std::uint32_t i = range.begin; i < range.end; ++i) {
-      box.extend(items_[i].box);
-      centroids.extend(items_[i].centroid());
-    }
-    bvh_.nodes[index].set_box(box);
-    const std::uint32_t middle = divide(range, box, centroids);
-    if (middle == range.begin) {
-      make_leaf(index, range);
-      return;
-    }
-    const auto children = static_cast<std::uint32_t>(bvh_.nodes.size());
-    bvh_.nodes[index].first = children;
-    bvh_.nodes.resize(children + 2u);
-    build_node(children, {range.begin, middle, range.depth + 1});
-    build_node(children + 1, {middle, range.end, range.depth + 1});
-  }
-
-  void make_leaf(std::uint32_t index, const Range& range) {
-    const std::size_t first = bvh_.refs.size();
-    for (std::uint32_t i = range.begin; i < range.end; ++i) bvh_.refs.push_back(items_[i].index);
-    std::sort(bvh_.refs.begin() + static_cast<std::ptrdiff_t>(first), bvh_.refs.end());
-    bvh_.nodes[index].first = static_cast<std::uint32_t>(first);
-    bvh_.nodes[index].count = range.count();
-  }
-
-  /// Orders the items so that those of the first child come first. Returns where the second child's
-  /// begin, or range.begin for a leaf.
-  std::uint32_t divide(const Range& range, const Aabb& box, const Aabb& centroids) {
-    const std::uint32_t count = range.count();
-    if (count == 1 || range.depth == kMaxBvhDepth) return range.begin;
-    const Measure measure(box);
-    const std::array<Binning, 3> binnings = choose_bins(centroids, count);
-    fill_bins(range, binnings);
-    Split best;
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      sweep(binnings[axis], axis, {measure, count}, best);
-
-    if (count <= config_.max_leaf) {
-      const double whole = measure(box);
-      const double leaf_cost = config_.intersect_cost * count * whole;
-      if (!best.found() || config_.traversal_cost * whole + best.cost >= leaf_cost)
-        return range.begin;
-    }
-    // A split so lopsided that its larger part might not fit under the depth limit is not taken.
-    const std::uint32_t larger = std::max(best.below_count, count - best.below_count);
-    if (!best.found() || larger > most_items_at(range.depth + 1)) return halve(range, centroids);
-    const Binning& binning = binnings[best.axis];
-    const auto middle = std::partition(
-        items_.begin() + range.begin, items_.begin() + range.end,
-        [&](const Item& item) { return binning.bin(item.centroid()[best.axis]) < best.plane; });
-    return static_cast<std::uint32_t>(middle - items_.begin());
-  }
-
   /// How many items a node of this depth can hold if it is halved from there on.
   std::uint64_t most_items_at(std::uint32_t depth) const {
     const std::uint32_t levels = std::min(kMaxBvhDepth - depth, 32u);
     return std::uint64_t{config_.max_leaf} << levels;
   }
 
-  /// Object median along the widest axis; equal centroids are told apart by number.
-  std::uint32_t halve(const Range& range, const Aabb& centroids) {
-    const Vec3f extent = centroids.extent();
-    std::size_t axis = 0;
-    for (std::size_t a = 1; a < 3; ++a)
-      if (extent[a] > extent[axis]) axis = a;
-    const std::uint32_t middle = range.begin + range.count() / 2;
-    std::nth_element(items_.begin() + range.begin, items_.begin() + middle,
-                     items_.begin() + range.end, [axis](const Item& a, const Item& b) {
-                       return std::pair(a.centroid()[axis], a.index) <
-                              std::pair(b.centroid()[axis], b.index);
-                     });
-    return middle;
+  BvhBuildConfig config_;
+  std::array<std::vector<BuildItem>, 2> arrays_;
+};
+
+std::pair<Run, Run> children_of(const Run& run, std::uint32_t middle, std::uint32_t source) {
+  return {Run{run.begin, middle, run.depth + 1, source, {}},
+          Run{middle, run.end, run.depth + 1, source, {}}};
+}
+
+RunBounds bounds_of(std::span<const BuildItem> items) {
+  RunBounds bounds;
+  for (const BuildItem& item : items) bounds.add(item);
+  return bounds;
+}
+
+/// Object median along the widest axis; equal centroids are told apart by number.
+std::pair<Run, Run> halve(Items& items, const Run& run) {
+  const Vec3f extent = run.bounds.centroids.box().extent();
+  std::size_t axis = 0;
+  for (std::size_t a = 1; a < 3; ++a)
+    if (extent[a] > extent[axis]) axis = a;
+  const auto all = items.of(run);
+  const std::uint32_t half = run.count() / 2;
+  std::nth_element(all.begin(), all.begin() + half, all.end(),
+                   [axis](const BuildItem& a, const BuildItem& b) {
+                     return std::pair(a.centroid().v[axis], a.index()) <
+                            std::pair(b.centroid().v[axis], b.index());
+                   });
+  auto [below, above] = children_of(run, run.begin + half, run.source);
+  below.bounds = bounds_of(items.of(below));
+  above.bounds = bounds_of(items.of(above));
+  return {below, above};
+}
+
+/// A subtree by one thread: nodes with links among themselves, leaves in the common references.
+class SubtreeBuilder {
+ public:
+  SubtreeBuilder(Items& items, std::span<std::uint32_t> refs) : items_(items), refs_(refs) {}
+
+  std::vector<BvhNode> build(const Run& run) {
+    nodes_.reserve(4 * (run.count() / items_.config().max_leaf + 1));
+    nodes_.resize(1);
+    build_node(0, run);
+    return std::move(nodes_);
   }
 
-  /// More bins than twice the items would tell nothing new.
-  std::array<Binning, 3> choose_bins(const Aabb& centroids, std::uint32_t count) const {
-    const int bins = count < static_cast<std::uint32_t>(kMaxBins)
-                         ? std::min(config_.bins, 2 * static_cast<int>(count))
-                         : config_.bins;
-    return {Binning(centroids.lo.x, centroids.hi.x, bins),
-            Binning(centroids.lo.y, centroids.hi.y, bins),
-            Binning(centroids.lo.z, centroids.hi.z, bins)};
+ private:
+  void build_node(std::uint32_t index, const Run& run) {
+    nodes_[index].set_box(run.bounds.box.box());
+    if (items_.is_surely_leaf(run)) return make_leaf(index, run);
+    const Binning binning = items_.choose_bins(run);
+    bins_.clear(binning.bins());
+    bins_.add(items_.of(run), binning);
+    const Division division = items_.divide(run, binning, bins_);
+    if (division.is_leaf) return make_leaf(index, run);
+    const auto [below, above] =
+        division.halved ? halve(items_, run) : part(run, binning, division.split);
+    const auto children = static_cast<std::uint32_t>(nodes_.size());
+    nodes_[index].first = children;
+    nodes_.resize(children + 2u);
+    build_node(children, below);
+    build_node(children + 1, above);
   }
 
-  void fill_bins(const Range& range, const std::array<Binning, 3>& binnings) {
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      std::fill_n(bins_[axis].begin(), binnings[axis].bins(), Bin{});
-    const auto add = [](Bin& bin, const Aabb& box) {
-      bin.box.extend(box);
-      ++bin.count;
-    };
-    const auto [x, y, z] = binnings;
-    Bin* const bins_x = bins_[0].data();
-    Bin* const bins_y = bins_[1].data();
-    Bin* const bins_z = bins_[2].data();
-    for (std::uint32_t i = range.begin; i < range.end; ++i) {
-      const Aabb box = items_[i].box;
-      const Vec3f centroid = items_[i].centroid();
-      add(bins_x[x.bin(centroid.x)], box);
-      add(bins_y[y.bin(centroid.y)], box);
-      add(bins_z[z.bin(centroid.z)], box);
+  /// Without branches: every item is written at both ends, and one end moves on.
+  std::pair<Run, Run> part(const Run& run, const Binning& binning, const SahSplit& split) {
+    BuildItem* const to = items_.destination(run);
+    std::uint32_t low = run.begin, high = run.end;
+    for (const BuildItem& item : items_.of(run)) {
+      const bool is_below = binning.bin(item.centroid())[split.axis] < split.plane;
+      to[low] = item;
+      to[high - 1] = item;
+      low += is_below;
+      high -= !is_below;
     }
+    auto [below, above] = children_of(run, low, run.source ^ 1u);
+    below.bounds = bounds_of(items_.of(below));
+    above.bounds = bounds_of(items_.of(above));
+    return {below, above};
   }
 
-  struct Node {
-    Measure measure;
-    std::uint32_t count;
+  void make_leaf(std::uint32_t index, const Run& run) {
+    const auto first = refs_.begin() + run.begin;
+    std::transform(items_.of(run).begin(), items_.of(run).end(), first,
+                   [](const BuildItem& item) { return item.index(); });
+    std::sort(first, first + run.count());
+    nodes_[index].first = run.begin;
+    nodes_[index].count = run.count();
+  }
+
+  Items& items_;
+  std::span<std::uint32_t> refs_;
+  std::vector<BvhNode> nodes_;
+  Bins bins_;
+};
+
+class BvhBuilder {
+ public:
+  BvhBuilder(std::span<const Aabb> boxes, const BvhBuildConfig& config) : items_(boxes, config) {
+    assert(config.bins >= 2 && config.bins <= kMaxBins);
+    assert(config.max_leaf >= 1 && config.block >= 1);
+    bvh_.refs.resize(boxes.size());
+  }
+
+  Bvh build() {
+    if (bvh_.refs.empty()) return {};
+    Run all{0, static_cast<std::uint32_t>(bvh_.refs.size()), 0, 0, {}};
+    all.bounds = chunk_bounds(all);
+    bvh_.nodes.resize(1);
+    build_top(0, all);
+    build_subtrees();
+    return std::move(bvh_);
+  }
+
+ private:
+  struct Subtree {
+    std::uint32_t node;
+    Run run;
+    std::vector<BvhNode> nodes;
+  };
+  /// What one chunk of a large node holds.
+  struct Chunk {
+    Bins bins;
+    std::uint32_t first_below = 0, first_above = 0;  ///< where its items go
+    RunBounds below, above;
   };
 
-  /// Costs of all planes of an axis, from prefixes and suffixes of the bins.
-  void sweep(const Binning& binning, std::size_t axis, const Node& node, Split& best) {
-    if (!binning.usable()) return;
-    const std::vector<Bin>& bins = bins_[axis];
-    const auto cost = [&](const Aabb& box, std::uint32_t count) {
-      return count == 0 ? 0 : config_.intersect_cost * node.measure(box) * count;
-    };
-    Aabb box;
-    std::uint32_t count = 0;
-    for (int plane = 1; plane < binning.bins(); ++plane) {
-      const Bin& bin = bins[static_cast<std::size_t>(plane - 1)];
-      box.extend(bin.box);
-      count += bin.count;
-      cost_below_[static_cast<std::size_t>(plane)] = cost(box, count);
+  void build_top(std::uint32_t index, const Run& run) {
+    if (run.count() <= kSubtreeItems) {
+      subtrees_.push_back({index, run, {}});
+      return;
     }
-    box = {};
-    count = 0;
-    for (int plane = binning.bins() - 1; plane > 0; --plane) {
-      const Bin& bin = bins[static_cast<std::size_t>(plane)];
-      box.extend(bin.box);
-      count += bin.count;
-      const double sum = cost_below_[static_cast<std::size_t>(plane)] + cost(box, count);
-      if (count != 0 && count != node.count && sum < best.cost)
-        best = {sum, axis, plane, node.count - count};
+    bvh_.nodes[index].set_box(run.bounds.box.box());
+    const auto [below, above] = part_large(run);
+    const auto children = static_cast<std::uint32_t>(bvh_.nodes.size());
+    bvh_.nodes[index].first = children;
+    bvh_.nodes.resize(children + 2u);
+    build_top(children, below);
+    build_top(children + 1, above);
+  }
+
+  template <class Body>
+  void for_chunks(const Run& run, const Body& body) {
+    parallel_chunks(run.count(), kChunkItems, [&](std::size_t begin, std::size_t end) {
+      body(chunks_[begin / kChunkItems],
+           std::span<const BuildItem>(items_.of(run)).subspan(begin, end - begin));
+    });
+  }
+
+  RunBounds chunk_bounds(const Run& run) {
+    chunks_.resize((run.count() + kChunkItems - 1) / kChunkItems);
+    for_chunks(run, [](Chunk& chunk, auto items) { chunk.below = bounds_of(items); });
+    RunBounds bounds;
+    for (const Chunk& chunk : chunks_) bounds.merge(chunk.below);
+    return bounds;
+  }
+
+  std::pair<Run, Run> part_large(const Run& run) {
+    const Binning binning = items_.choose_bins(run);
+    const std::size_t count = (run.count() + kChunkItems - 1) / kChunkItems;
+    if (chunks_.size() < count) chunks_.resize(count);
+    for_chunks(run, [&](Chunk& chunk, auto items) {
+      chunk.bins.clear(binning.bins());
+      chunk.bins.add(items, binning);
+    });
+    Bins all;
+    all.clear(binning.bins());
+    for (std::size_t c = 0; c < count; ++c) all.merge(chunks_[c].bins);
+    const Division division = items_.divide(run, binning, all);
+    if (division.halved) return halve(items_, run);
+    return scatter(run, binning, division.split);
+  }
+
+  /// Each chunk's items go to places of their own, which the bins' counts foretell.
+  std::pair<Run, Run> scatter(const Run& run, const Binning& binning, const SahSplit& split) {
+    auto [below, above] = children_of(run, run.begin + split.below_count, run.source ^ 1u);
+    const std::size_t count = (run.count() + kChunkItems - 1) / kChunkItems;
+    std::uint32_t low = below.begin, high = above.begin;
+    for (std::size_t c = 0; c < count; ++c) {
+      const std::size_t begin = c * kChunkItems;
+      const auto size =
+          static_cast<std::uint32_t>(std::min<std::size_t>(kChunkItems, run.count() - begin));
+      const std::uint32_t in_below = chunks_[c].bins.count_below(split.axis, split.plane);
+      chunks_[c].first_below = low;
+      chunks_[c].first_above = high;
+      low += in_below;
+      high += size - in_below;
+    }
+    BuildItem* const to = items_.destination(run);
+    for_chunks(run, [&](Chunk& chunk, auto items) {
+      chunk.below = chunk.above = {};
+      std::uint32_t next_below = chunk.first_below, next_above = chunk.first_above;
+      for (const BuildItem& item : items) {
+        const bool is_below = binning.bin(item.centroid())[split.axis] < split.plane;
+        to[is_below ? next_below++ : next_above++] = item;
+        (is_below ? chunk.below : chunk.above).add(item);
+      }
+    });
+    for (std::size_t c = 0; c < count; ++c) {
+      below.bounds.merge(chunks_[c].below);
+      above.bounds.merge(chunks_[c].above);
+    }
+    return {below, above};
+  }
+
+  void build_subtrees() {
+    parallel_chunks(subtrees_.size(), 1, [&](std::size_t i, std::size_t) {
+      subtrees_[i].nodes = SubtreeBuilder(items_, bvh_.refs).build(subtrees_[i].run);
+    });
+    for (Subtree& subtree : subtrees_) {
+      // Node 0 of a subtree has its place; the others follow what there is.
+      const auto shift = static_cast<std::uint32_t>(bvh_.nodes.size()) - 1;
+      for (BvhNode& node : subtree.nodes)
+        if (!node.is_leaf()) node.first += shift;
+      bvh_.nodes[subtree.node] = subtree.nodes[0];
+      bvh_.nodes.insert(bvh_.nodes.end(), subtree.nodes.begin() + 1, subtree.nodes.end());
     }
   }
 
-  BvhBuildConfig config_;
-  std::vector<Item> items_;
-  std::array<std::vector<Bin>, 3> bins_;
-  std::vector<double> cost_below_;  ///< by plane
+  Items items_;
   Bvh bvh_;
+  std::vector<Subtree> subtrees_;
+  std::vector<Chunk> chunks_;
 };
 
 }  // namespace

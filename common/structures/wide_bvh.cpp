@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cassert>
+#include <utility>
 
 #include "common/base/parallel.h"
 
@@ -10,17 +11,26 @@ namespace {
 
 constexpr std::size_t kNodesPerChunk = 512;
 
-double area(const BvhNode& node) {
-  const Vec3d e = to_double(node.hi) - to_double(node.lo);
-  return e.x * e.y + e.y * e.z + e.z * e.x;
+/// What visiting a wide node and testing a leaf's block cost, in the same unit.
+constexpr float kNodeCost = 1.0f;
+constexpr float kLeafCost = 1.0f;
+
+float half_area(const BvhNode& node) {
+  const float x = node.hi.x - node.lo.x, y = node.hi.y - node.lo.y, z = node.hi.z - node.lo.z;
+  return x * y + (x + y) * z;
 }
 
+/// Bottom up, the least cost of standing for a binary node by at most i = 1...8 wide ones:
+///
+///     cost(n, 1) = a wide node over the best eight, or a leaf
+///     cost(n, i) = the best way to share i between n's two children, or cost(n, i - 1)
 class Collapser {
  public:
-  explicit Collapser(const Bvh& binary) : binary_(binary) {}
+  explicit Collapser(const Bvh& binary) : binary_(binary), plans_(binary.nodes.size()) {}
 
   WideBvh run() {
     if (binary_.nodes.empty()) return {};
+    for (std::size_t i = binary_.nodes.size(); i-- > 0;) make_plan(i);
     wide_.nodes.reserve(binary_.nodes.size() / kBvhWidth + 1);
     wide_.items.reserve((binary_.nodes.size() + 1) / 2 * kLeafItems);
     collapse_node(0);
@@ -28,36 +38,72 @@ class Collapser {
   }
 
  private:
+  /// Entry i is for at most i wide nodes; index 0 is not used.
+  struct Plan {
+    std::array<float, kBvhWidth + 1> cost;
+    std::array<std::uint8_t, kBvhWidth + 1> used;  ///< how many of i are made use of
+    std::array<std::uint8_t, kBvhWidth + 1> left;  ///< of i in use, how many go to the first child
+    std::uint8_t own_left = 0;                     ///< the same for the eight of its own wide node
+  };
   struct Children {
     std::array<std::uint32_t, kBvhWidth> nodes;  ///< of the binary tree
     std::uint32_t count = 0;
   };
 
-  /// The children of the wide node that stands for binary node `root`.
-  Children choose_children(std::uint32_t root) const {
-    Children chosen;
-    chosen.nodes[chosen.count++] = root;
-    while (chosen.count < kBvhWidth) {
-      std::uint32_t widest = kBvhWidth;
-      double widest_area = -1;
-      for (std::uint32_t c = 0; c < chosen.count; ++c) {
-        const BvhNode& node = binary_.nodes[chosen.nodes[c]];
-        if (node.is_leaf() || area(node) <= widest_area) continue;
-        widest = c;
-        widest_area = area(node);
-      }
-      if (widest == kBvhWidth) break;
-      const std::uint32_t first = binary_.nodes[chosen.nodes[widest]].first;
-      chosen.nodes[widest] = first;
-      chosen.nodes[chosen.count++] = first + 1;
+  void make_plan(std::size_t index) {
+    const BvhNode& node = binary_.nodes[index];
+    Plan& plan = plans_[index];
+    if (node.is_leaf()) {
+      plan.cost.fill(half_area(node) * kLeafCost);
+      plan.used.fill(1);
+      return;
     }
-    return chosen;
+    const Plan &first = plans_[node.first], &second = plans_[node.first + 1];
+    for (std::size_t i = 2; i <= kBvhWidth; ++i) {
+      plan.cost[i] = first.cost[1] + second.cost[i - 1];
+      plan.left[i] = 1;
+      for (std::size_t k = 2; k < i; ++k) {
+        const float cost = first.cost[k] + second.cost[i - k];
+        if (!(cost < plan.cost[i])) continue;
+        plan.cost[i] = cost;
+        plan.left[i] = static_cast<std::uint8_t>(k);
+      }
+    }
+    plan.own_left = plan.left[kBvhWidth];
+    plan.cost[1] = plan.cost[kBvhWidth] + half_area(node) * kNodeCost;
+    plan.used[1] = 1;
+    for (std::size_t i = 2; i <= kBvhWidth; ++i) {
+      const bool fewer_will_do = plan.cost[i - 1] <= plan.cost[i];
+      plan.used[i] = fewer_will_do ? plan.used[i - 1] : static_cast<std::uint8_t>(i);
+      if (fewer_will_do) plan.cost[i] = plan.cost[i - 1];
+    }
+  }
+
+  /// Adds what stands for binary node `index` where there is room for `room`.
+  void choose(std::uint32_t index, std::size_t room, Children& chosen) const {
+    const Plan& plan = plans_[index];
+    const std::size_t used = plan.used[room];
+    if (used == 1) {
+      chosen.nodes[chosen.count++] = index;
+    } else {
+      share(index, plan.left[used], used, chosen);
+    }
+  }
+  void share(std::uint32_t index, std::size_t left, std::size_t room, Children& chosen) const {
+    const std::uint32_t first = binary_.nodes[index].first;
+    choose(first, left, chosen);
+    choose(first + 1, room - left, chosen);
   }
 
   std::uint32_t collapse_node(std::uint32_t root) {
     const auto index = static_cast<std::uint32_t>(wide_.nodes.size());
     wide_.nodes.emplace_back();
-    const Children children = choose_children(root);
+    Children children;
+    if (binary_.nodes[root].is_leaf()) {
+      children.nodes[children.count++] = root;
+    } else {
+      share(root, plans_[root].own_left, kBvhWidth, children);
+    }
     for (std::uint32_t c = 0; c < children.count; ++c) {
       const BvhNode& from = binary_.nodes[children.nodes[c]];
       const WideBvhChild child = from.is_leaf()
@@ -81,6 +127,7 @@ class Collapser {
   }
 
   const Bvh& binary_;
+  std::vector<Plan> plans_;  ///< by node of the binary tree
   WideBvh wide_;
 };
 
@@ -98,8 +145,7 @@ Aabb box_of_items(std::span<const std::uint32_t, kLeafItems> items, std::span<co
 WideBvh collapse(const Bvh& binary) { return Collapser(binary).run(); }
 
 WideBvh build_wide_bvh(std::span<const Aabb> boxes, int bins) {
-  return collapse(
-      build_bvh(boxes, {.bins = bins, .intersect_cost = 0.06f, .max_leaf = kLeafItems}));
+  return collapse(build_bvh(boxes, {.bins = bins, .max_leaf = kLeafItems, .block = kLeafItems}));
 }
 
 void refit_wide_bvh(WideBvh& bvh, std::span<const Aabb> boxes) {

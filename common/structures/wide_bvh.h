@@ -80,8 +80,9 @@ struct WideBvh {
   }
 };
 
-/// Opens, node by node, the child with the largest box until eight are held (Wald, Benthin, Boulos
-/// 2008). The leaves of `binary` have at most kLeafItems references. Cost: O(N).
+/// The wide hierarchy of least expected cost that can be made of a binary one by leaving nodes out
+/// (Ylitie, Karras, Laine 2017). The leaves of `binary` have at most kLeafItems references. Cost:
+/// O(N).
 WideBvh collapse(const Bvh& binary);
 
 /// A tree over `boxes` whose leaves hold as many items as are tested together. Boxes must be finite

@@ -128,7 +128,7 @@ TEST_F(Render, StatsHaveARowPerFrameWithTimesAndCounts) {
   EXPECT_EQ(stats["schema"], "mdprep-render/1");
   EXPECT_EQ(stats["width"], 64);
   EXPECT_EQ(stats["height"], 48);
-  EXPECT_EQ(stats["technique"], "fuzzy-kdtree");
+  EXPECT_EQ(stats["technique"], "fuzzy-bvh");
   EXPECT_EQ(stats["threads"], 2);
   ASSERT_EQ(stats["frames"].size(), 3u);
   for (int i = 0; i < 3; ++i) {
