@@ -43,33 +43,6 @@ std::vector<NodeState> local_states(const Document& document, const AnimationCli
   return states;
 }
 
-/// Vertices in their own space: modelled positions plus weighted target offsets.
-std::vector<Vec3d> morphed(const PrimitiveGeometry& geometry, std::span<const double> weights) {
-  std::vector<Vec3d> points(geometry.positions.size());
-  for (std::size_t i = 0; i < points.size(); ++i) points[i] = to_double(geometry.positions[i]);
-  for (std::size_t t = 0; t < geometry.target_offsets.size(); ++t) {
-    const std::vector<Vec3f>& offsets = geometry.target_offsets[t];
-    if (weights[t] == 0) continue;
-    for (std::size_t i = 0; i < offsets.size(); ++i)
-      points[i] += to_double(offsets[i]) * weights[t];
-  }
-  return points;
-}
-
-/// The weighted sum of the maps that move vertex `i`.
-Affine3d blended(std::span<const Influence> influences, std::span<const Affine3d> joints) {
-  if (influences.size() == 1) return joints[influences[0].joint];
-  Affine3d sum{};
-  for (auto& row : sum.m)
-    for (double& entry : row) entry = 0;
-  for (const Influence& influence : influences) {
-    const Affine3d& map = joints[influence.joint];
-    for (std::size_t r = 0; r < 3; ++r)
-      for (std::size_t c = 0; c < 4; ++c) sum.m[r][c] += influence.weight * map.m[r][c];
-  }
-  return sum;
-}
-
 std::span<const Influence> influences_of(const PrimitiveGeometry& geometry, std::size_t i) {
   return std::span(geometry.influences)
       .subspan(geometry.first_influence[i],
@@ -119,21 +92,6 @@ std::vector<Affine3d> pose_joints(const SkinBinding& skin, const NodePose& pose)
     maps.push_back(pose.world_from_node[static_cast<std::size_t>(skin.joints[j])] *
                    skin.joint_from_vertex[j]);
   return maps;
-}
-
-void place_vertices(const Instance& instance, const NodePose& pose,
-                    std::span<const Affine3d> joints, std::span<Vec3f> positions) {
-  const PrimitiveGeometry& geometry = *instance.geometry;
-  const auto node = static_cast<std::size_t>(instance.node);
-  const Affine3d& world_from_node = pose.world_from_node[node];
-  const std::vector<Vec3d> points = morphed(geometry, pose.weights[node]);
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    std::span<const Influence> influences;
-    if (instance.skin != kNone) influences = influences_of(geometry, i);
-    // A vertex that no joint moves goes with its node, like a mesh without skin.
-    const Affine3d map = influences.empty() ? world_from_node : blended(influences, joints);
-    positions[i] = to_float(map.point(points[i]));
-  }
 }
 
 bool is_mirrored(const Instance& instance, const NodePose& pose, std::span<const Affine3d> joints) {

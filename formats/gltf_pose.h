@@ -1,11 +1,10 @@
-// Where everything stands at one moment: node hierarchy, morph targets, skinning; all in double.
+// Where nodes and joints stand at one moment; all in double.
 #pragma once
 
 #include <span>
 #include <vector>
 
 #include "common/math/affine3.h"
-#include "common/math/vec3.h"
 #include "formats/gltf_animation.h"
 #include "formats/gltf_document.h"
 #include "formats/gltf_geometry.h"
@@ -39,10 +38,6 @@ NodePose pose_nodes(const Document& document, const AnimationClip& clip, double 
 
 /// One map per joint of a skin: world from the space its vertices are modelled in.
 std::vector<Affine3d> pose_joints(const SkinBinding& skin, const NodePose& pose);
-
-/// World positions of an instance's vertices; `joints` as pose_joints gives it, empty without skin.
-void place_vertices(const Instance& instance, const NodePose& pose,
-                    std::span<const Affine3d> joints, std::span<Vec3f> positions);
 
 /// Whether the instance is mirrored: its maps' determinants, weighted by what they move, are
 /// negative (glTF 2.0 §3.7.4: then its triangles wind the other way).

@@ -1,5 +1,5 @@
-// Decode each mesh once, list who shows it, sample every key of every clip, then join the vertices
-// that always move together.
+// Decode each mesh once, list who shows it, sample bones and morph weights at every key of every
+// clip, join the vertices that are computed from the same numbers, and decode the poses.
 #include "formats/gltf_reader.h"
 
 #include <algorithm>
@@ -15,6 +15,7 @@
 #include "formats/gltf_document.h"
 #include "formats/gltf_geometry.h"
 #include "formats/gltf_pose.h"
+#include "formats/gltf_rig.h"
 
 namespace mdk {
 namespace {
@@ -23,7 +24,8 @@ using namespace gltf;
 
 constexpr std::size_t kMaxVertices = std::size_t{1} << 27;
 constexpr std::size_t kMaxCorners = std::size_t{1} << 29;
-constexpr std::size_t kMaxPositionBytes = std::size_t{16} << 30;
+constexpr std::size_t kMaxLinks = 0xffffffffu;
+constexpr std::size_t kMaxPoseBytes = std::size_t{16} << 30;
 constexpr std::size_t kKeysPerChunk = 2;
 constexpr std::size_t kKeysPerReport = 32;
 
@@ -109,60 +111,60 @@ std::vector<std::uint64_t> assemble(Document& document, const Scene& scene, cons
   return groups;
 }
 
-/// Lists the clips' keys in the sequence and makes room for their poses.
+/// Lists the clips' keys in the sequence.
 void lay_out_keys(const Document& document, const std::vector<AnimationClip>& clips,
-                  PoseSequence& sequence) {
+                  const RigPlan& plan, PoseSequence& sequence) {
   for (const AnimationClip& clip : clips) {
     sequence.clips.push_back(
         {clip.name, sequence.key_count(), static_cast<std::uint32_t>(clip.key_times.size())});
     sequence.key_times.insert(sequence.key_times.end(), clip.key_times.begin(),
                               clip.key_times.end());
   }
-  const std::size_t bytes_per_key = sizeof(Vec3f) * sequence.vertex_count;
-  if (sequence.key_times.size() > kMaxPositionBytes / bytes_per_key)
+  const std::size_t bytes_per_key = sizeof(Vec3f) * sequence.vertex_count + plan.bytes_per_key();
+  if (sequence.key_times.size() > kMaxPoseBytes / bytes_per_key)
     throw Error(ErrorCode::kOverLimit,
                 document.path + ": " + std::to_string(sequence.key_times.size()) + " keys of " +
                     std::to_string(sequence.vertex_count) +
                     " vertices take over 16 GiB; choose a lower --fps or fewer --clips");
-  sequence.positions.resize(sequence.key_times.size() * sequence.vertex_count);
 }
 
-void place_scene(const Scene& scene, const NodePose& pose, std::span<Vec3f> positions) {
-  std::size_t first = 0;
-  for (const Instance& instance : scene.instances) {
-    const std::size_t count = instance.geometry->positions.size();
-    place_vertices(instance, pose, joints_of(scene, instance, pose),
-                   positions.subspan(first, count));
-    first += count;
-  }
-}
-
-void check_finite(const Document& document, const PoseSequence& sequence, std::uint32_t key,
-                  const std::string& clip) {
-  for (const Vec3f& p : sequence.pose(key))
-    if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
-      throw bad_input(document.path, "clip \"" + clip + "\" takes a vertex out of range at " +
-                                         std::to_string(sequence.key_times[key]) + " s");
-}
-
-void sample_keys(const Document& document, const Scene& scene,
+void sample_keys(const Document& document, const RigPlan& plan,
                  const std::vector<AnimationClip>& clips, PoseSequence& sequence,
                  ProgressSink& progress) {
+  plan.make_room(*sequence.rig, sequence.key_count());
   for (std::size_t c = 0; c < clips.size(); ++c) {
     const Clip& keys = sequence.clips[c];
     for (std::size_t begin = 0; begin < keys.key_count; begin += kKeysPerReport) {
       progress.report("read", static_cast<double>(keys.first_key + begin) / sequence.key_count());
       const std::size_t count = std::min<std::size_t>(kKeysPerReport, keys.key_count - begin);
       parallel_chunks(count, kKeysPerChunk, [&](std::size_t from, std::size_t to) {
-        for (std::size_t i = begin + from; i < begin + to; ++i) {
-          const auto key = keys.first_key + static_cast<std::uint32_t>(i);
-          const NodePose pose = pose_nodes(document, clips[c], clips[c].key_times[i]);
-          place_scene(scene, pose, sequence.pose(key));
-          check_finite(document, sequence, key, keys.name);
-        }
+        for (std::size_t i = begin + from; i < begin + to; ++i)
+          plan.set_key(*sequence.rig, keys.first_key + i,
+                       pose_nodes(document, clips[c], clips[c].key_times[i]));
       });
     }
   }
+}
+
+bool is_finite(std::span<const Vec3f> positions) {
+  bool finite = true;
+  for (const Vec3f& p : positions)
+    finite &= std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
+  return finite;
+}
+
+void check_finite(const Document& document, const PoseSequence& sequence) {
+  std::vector<char> fails(sequence.key_count(), 0);
+  parallel_chunks(fails.size(), kKeysPerChunk, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t key = begin; key < end; ++key)
+      fails[key] = !is_finite(sequence.pose(static_cast<std::uint32_t>(key)));
+  });
+  for (const Clip& clip : sequence.clips)
+    for (std::size_t key = clip.first_key; key < clip.first_key + clip.key_count; ++key)
+      if (fails[key])
+        throw bad_input(document.path, "clip \"" + clip.name +
+                                           "\" takes a vertex out of range at " +
+                                           std::to_string(sequence.key_times[key]) + " s");
 }
 
 GltfResult read(const std::string& path, const GltfOptions& options, ProgressSink& progress) {
@@ -178,9 +180,16 @@ GltfResult read(const std::string& path, const GltfOptions& options, ProgressSin
   PoseSequence& sequence = result.sequence;
   const NodePose first_pose = pose_nodes(document, clips[0], 0.0);
   const std::vector<std::uint64_t> groups = assemble(document, scene, first_pose, notes, sequence);
-  lay_out_keys(document, clips, sequence);
-  sample_keys(document, scene, clips, sequence, progress);
+  const RigPlan plan(scene.instances, scene.skins);
+  if (plan.most_links() > kMaxLinks)
+    throw too_large(document.path, "over 4 billion joint weights or morph offsets");
+  lay_out_keys(document, clips, plan, sequence);
+  sequence.rig = plan.shape();
+  sample_keys(document, plan, clips, sequence, progress);
+  simplify_rig(*sequence.rig, sequence.key_count());
   weld_vertices(sequence, groups);
+  decode_positions(sequence);
+  check_finite(document, sequence);
   check_consistency(sequence);
 
   result.dependencies = std::move(document.dependencies);

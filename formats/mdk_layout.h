@@ -26,7 +26,6 @@ inline constexpr std::uint64_t kAlignment = 64;
 inline constexpr std::uint32_t kMaxSections = 256;
 inline constexpr std::uint32_t kSectionNeeded =
     1;  ///< flag: whoever does not know the id must refuse
-inline constexpr std::uint32_t kPoseKindKeyPositions = 0;
 
 struct FileHeader {
   std::array<unsigned char, 8> magic = kMagic;
@@ -56,7 +55,7 @@ static_assert(sizeof(SectionEntry) == 40);
 struct ModelRecord {
   std::uint32_t vertex_count = 0, key_count = 0, triangle_count = 0, cluster_count = 0;
   std::uint32_t clip_count = 0, rest_key = 0;
-  std::uint32_t pose_kind = kPoseKindKeyPositions;
+  PoseKind pose_kind = PoseKind::kKeyPositions;
   std::uint32_t segment_count = 0;
   double rest_diagonal = 0;
   Aabb bounds;
@@ -75,6 +74,8 @@ static_assert(sizeof(Material) == 32 && offsetof(Material, texture) == 16);
 static_assert(sizeof(Texture) == 16 && offsetof(Texture, first_texel) == 8);
 static_assert(sizeof(Cluster) == 8 && sizeof(Segment) == 8);
 static_assert(sizeof(FuzzyTree) == 40 && offsetof(FuzzyTree, local_box) == 16);
+static_assert(sizeof(PoseKind) == 4 && sizeof(BoneWeight) == 8);
+static_assert(sizeof(MorphOffset) == 16 && offsetof(MorphOffset, offset) == 4);
 
 struct SectionKind {
   std::uint32_t id = 0;
@@ -110,6 +111,13 @@ inline constexpr SectionKind kTexcoords{fourcc("UVCO"), "corner_texcoords"};
 inline constexpr SectionKind kColors{fourcc("COLR"), "corner_colors"};
 inline constexpr SectionKind kTextures{fourcc("TEXI"), "textures"};
 inline constexpr SectionKind kTexels{fourcc("TEXL"), "texels"};
+inline constexpr SectionKind kBoneMaps{fourcc("BONE"), "bone_maps"};
+inline constexpr SectionKind kTargetWeights{fourcc("TGTW"), "target_weights"};
+inline constexpr SectionKind kBasePositions{fourcc("BASE"), "base_positions"};
+inline constexpr SectionKind kFirstWeight{fourcc("BWFI"), "first_weight"};
+inline constexpr SectionKind kBoneWeights{fourcc("BWGT"), "bone_weights"};
+inline constexpr SectionKind kFirstOffset{fourcc("MOFI"), "first_offset"};
+inline constexpr SectionKind kMorphOffsets{fourcc("MOFF"), "morph_offsets"};
 inline constexpr SectionKind kKeyPositions{fourcc("POSE"), "key_positions"};
 
 /// Calls visit(kind, span) for the lists of a model that stand in a section of their own and are
@@ -134,7 +142,14 @@ void for_each_array(ModelRef&& model, Visit&& visit) {
   visit(kColors, model.corner_colors);
   visit(kTextures, model.textures);
   visit(kTexels, model.texels);
-  visit(kKeyPositions, model.key_positions);
+  visit(kBoneMaps, model.poses.rig.bone_maps);
+  visit(kTargetWeights, model.poses.rig.target_weights);
+  visit(kBasePositions, model.poses.rig.base_positions);
+  visit(kFirstWeight, model.poses.rig.first_weight);
+  visit(kBoneWeights, model.poses.rig.bone_weights);
+  visit(kFirstOffset, model.poses.rig.first_offset);
+  visit(kMorphOffsets, model.poses.rig.morph_offsets);
+  visit(kKeyPositions, model.poses.key_positions);
 }
 
 constexpr std::uint64_t align_up(std::uint64_t offset) {

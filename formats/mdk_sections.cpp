@@ -15,13 +15,20 @@ using layout::FileHeader;
 using layout::SectionEntry;
 using layout::SectionKind;
 
-constexpr SectionKind kKnownSections[] = {
-    layout::kModel,       layout::kClips,      layout::kClipNames,       layout::kKeyTimes,
-    layout::kClusters,    layout::kSegments,   layout::kFuzzyTrees,      layout::kKdNodes,
-    layout::kKdRefs,      layout::kTriangles,  layout::kSourceTriangles, layout::kLocalFromWorld,
-    layout::kWorldBoxes,  layout::kFuzzyBoxes, layout::kMaterials,       layout::kTriangleMaterials,
-    layout::kTexcoords,   layout::kColors,     layout::kTextures,        layout::kTexels,
-    layout::kKeyPositions};
+constexpr SectionKind kKnownSections[] = {layout::kModel,           layout::kClips,
+                                          layout::kClipNames,       layout::kKeyTimes,
+                                          layout::kClusters,        layout::kSegments,
+                                          layout::kFuzzyTrees,      layout::kKdNodes,
+                                          layout::kKdRefs,          layout::kTriangles,
+                                          layout::kSourceTriangles, layout::kLocalFromWorld,
+                                          layout::kWorldBoxes,      layout::kFuzzyBoxes,
+                                          layout::kMaterials,       layout::kTriangleMaterials,
+                                          layout::kTexcoords,       layout::kColors,
+                                          layout::kTextures,        layout::kTexels,
+                                          layout::kBoneMaps,        layout::kTargetWeights,
+                                          layout::kBasePositions,   layout::kFirstWeight,
+                                          layout::kBoneWeights,     layout::kFirstOffset,
+                                          layout::kMorphOffsets,    layout::kKeyPositions};
 
 const SectionKind* find_kind(std::uint32_t id) {
   const auto found = std::find_if(std::begin(kKnownSections), std::end(kKnownSections),

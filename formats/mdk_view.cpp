@@ -21,10 +21,11 @@ const ModelRecord& only_record(const MdkSections& sections, const std::string& p
     throw bad_input(path, "section model must hold one record; the file is damaged: bake it again");
   }
   const ModelRecord& record = records.front();
-  if (record.pose_kind != layout::kPoseKindKeyPositions) {
-    throw bad_input(path, "stores its poses as kind " + std::to_string(record.pose_kind) +
-                              ", which this program does not know (it knows 0, key positions); use "
-                              "a newer one, or bake the file again");
+  if (record.pose_kind > PoseKind::kRig) {
+    throw bad_input(path, "stores its poses as kind " +
+                              std::to_string(static_cast<std::uint32_t>(record.pose_kind)) +
+                              ", which this program does not know (it knows 0, key positions, and "
+                              "1, a rig); use a newer one, or bake the file again");
   }
   return record;
 }
@@ -66,6 +67,7 @@ struct MdkFile::State {
     model.rest_key = record.rest_key;
     model.bounds = record.bounds;
     model.rest_diagonal = record.rest_diagonal;
+    model.poses.kind = record.pose_kind;
     model.clips = clips;
     layout::for_each_array(
         model, [&]<class T>(const layout::SectionKind& kind, std::span<const T>& array) {

@@ -46,6 +46,7 @@ Records make_records(const Model& model) {
   r.clip_count = static_cast<std::uint32_t>(model.clips.size());
   r.rest_key = model.rest_key;
   r.rest_diagonal = model.rest_diagonal;
+  r.pose_kind = model.poses.kind;
   r.bounds = model.bounds;
   for (const Clip& clip : model.clips) {
     records.clips.push_back({static_cast<std::uint32_t>(records.clip_names.size()),

@@ -7,6 +7,8 @@
 #include <limits>
 
 #include "common/structures/kd_tree.h"
+#include "formats/check_text.h"
+#include "formats/pose_check.h"
 
 namespace mdk {
 namespace {
@@ -14,14 +16,6 @@ namespace {
 constexpr std::uint64_t kMaxCount = (std::uint64_t{1} << 30) - 1;  // so that 3 T fits 32 bits
 constexpr std::uint64_t kMaxLinks = std::numeric_limits<std::uint32_t>::max();
 constexpr std::uint32_t kMaxTextureSide = 1u << 24;
-
-std::string number(std::uint64_t value) { return std::to_string(value); }
-
-/// "fuzzy_boxes: 7 of them, not 12"
-std::string count_fault(const char* name, std::uint64_t count, std::uint64_t wanted) {
-  if (count == wanted) return {};
-  return std::string(name) + ": " + number(count) + " of them, not " + number(wanted);
-}
 
 std::string range_fault(const char* name, std::uint64_t count, std::uint64_t least,
                         std::uint64_t most) {
@@ -35,14 +29,6 @@ bool is_box(const Aabb& b) {
   bool ok = true;  // no early exit: this runs over all boxes
   for (int axis = 0; axis < 3; ++axis) {
     ok &= -kMax <= b.lo[axis] && b.lo[axis] <= b.hi[axis] && b.hi[axis] <= kMax;
-  }
-  return ok;
-}
-
-bool is_finite(const Affine3f& map) {
-  bool ok = true;
-  for (const auto& row : map.m) {
-    for (const float entry : row) ok &= std::isfinite(entry);
   }
   return ok;
 }
@@ -67,11 +53,11 @@ bool is_utf8(const std::string& text) {
 }
 
 std::string check_counts(const Model& m) {
-  const std::uint64_t vertices = m.vertex_count, keys = m.key_times.size();
+  const std::uint64_t keys = m.key_times.size();
   const std::uint64_t triangles = m.triangles.size(), clusters = m.clusters.size();
   const std::uint64_t segments = m.segments.size();
   const std::string ranges[] = {
-      range_fault("vertices", vertices, 1, kMaxCount),
+      range_fault("vertices", m.vertex_count, 1, kMaxCount),
       range_fault("key_times", keys, 1, kMaxCount),
       range_fault("triangles", triangles, 1, kMaxCount),
       range_fault("clusters", clusters, 1, kMaxCount),
@@ -87,7 +73,6 @@ std::string check_counts(const Model& m) {
   }
   const auto per_corner = [&](std::size_t count) { return count == 0 ? 0 : 3 * triangles; };
   const std::string sizes[] = {
-      count_fault("key_positions", m.key_positions.size(), keys * vertices),
       count_fault("source_triangles", m.source_triangles.size(), triangles),
       count_fault("local_from_world", m.local_from_world.size(), keys * clusters),
       count_fault("cluster_world_boxes", m.cluster_world_boxes.size(), keys * clusters),
@@ -306,9 +291,9 @@ std::string check_textures(const Model& m) {
 }  // namespace
 
 std::string find_inconsistency(const Model& model) {
-  for (const auto check :
-       {check_counts, check_scalars, check_clips, check_segments, check_triangles, check_clusters,
-        check_tree_ranges, check_trees, check_boxes_and_maps, check_materials, check_textures}) {
+  for (const auto check : {check_counts, check_scalars, check_clips, check_segments,
+                           check_triangles, check_clusters, check_tree_ranges, check_trees,
+                           check_boxes_and_maps, check_poses, check_materials, check_textures}) {
     if (std::string fault = check(model); !fault.empty()) return fault;
   }
   return {};

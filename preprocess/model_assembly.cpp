@@ -95,6 +95,25 @@ void build_fuzzy_trees(ModelStorage& model, std::span<const ClusterWork> work,
   }
 }
 
+/// Vertices in the order in which the clusters meet them, so that those of a cluster lie together.
+std::vector<std::uint32_t> cluster_order(const ClusterMembers& members,
+                                         std::uint32_t vertex_count) {
+  std::vector<std::uint32_t> order;
+  std::vector<char> met(vertex_count, 0);
+  for (const std::uint32_t v : members.vertices) {
+    if (!met[v]) order.push_back(v);
+    met[v] = 1;
+  }
+  return order;
+}
+
+/// What takes less room: the rig, where there is one, or the positions it was decoded to.
+PoseStorage smallest_poses(PoseSequence& sequence) {
+  if (!sequence.rig || sequence.rig->bytes() >= sequence.positions.size() * sizeof(Vec3f))
+    return {PoseKind::kKeyPositions, std::move(sequence.positions), {}};
+  return {PoseKind::kRig, {}, *std::move(sequence.rig)};
+}
+
 std::vector<Cluster> cluster_ranges(const ClusterMembers& members) {
   std::vector<Cluster> clusters(members.cluster_count());
   for (std::uint32_t c = 0; c < clusters.size(); ++c)
@@ -122,7 +141,6 @@ AssembledModel assemble_model(PoseSequence sequence, const ClusterMembers& membe
   progress.report("build", 0);
   AssembledModel result;
   ModelStorage& model = result.model;
-  model.vertex_count = sequence.vertex_count;
   model.rest_key = parts.rest_key;
   Aabbd rest_box;
   for (const Vec3f& v : sequence.pose(parts.rest_key)) rest_box.extend(to_double(v));
@@ -137,6 +155,8 @@ AssembledModel assemble_model(PoseSequence sequence, const ClusterMembers& membe
   for (const Aabb& box : model.cluster_world_boxes) model.bounds.extend(box);
   model.clusters = cluster_ranges(members);
   model.local_from_world = std::move(parts.local_from_world);
+  select_vertices(sequence, cluster_order(members, sequence.vertex_count));
+  model.vertex_count = sequence.vertex_count;
   model.triangles = std::move(sequence.triangles);
   progress.report("build", 0.4);
 
@@ -157,7 +177,7 @@ AssembledModel assemble_model(PoseSequence sequence, const ClusterMembers& membe
   permute(model.appearance.corner_colors, model.source_triangles, 3);
   model.clips = std::move(sequence.clips);
   model.key_times = std::move(sequence.key_times);
-  model.key_positions = std::move(sequence.positions);
+  model.poses = smallest_poses(sequence);
   progress.report("build", 1);
   return result;
 }

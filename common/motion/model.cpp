@@ -14,7 +14,7 @@ Model ModelStorage::view() const {
   model.rest_diagonal = rest_diagonal;
   model.clips = clips;
   model.key_times = key_times;
-  model.key_positions = key_positions;
+  model.poses = poses.view();
   model.triangles = triangles;
   model.source_triangles = source_triangles;
   model.clusters = clusters;
@@ -66,6 +66,20 @@ std::uint32_t segment_of(const Model& model, const KeyInterval& at) {
       model.segments.begin(), model.segments.end(), at.key1,
       [](const Segment& segment, std::uint32_t key) { return segment.last_key < key; });
   return static_cast<std::uint32_t>(reaches - model.segments.begin());
+}
+
+void decode_pose(const Model& model, std::uint32_t key, VertexRange range, std::span<Vec3f> out) {
+  const PoseSource& poses = model.poses;
+  switch (poses.kind) {
+    case PoseKind::kKeyPositions: {
+      const std::size_t first = static_cast<std::size_t>(key) * model.vertex_count + range.begin;
+      std::ranges::copy(poses.key_positions.subspan(first, range.size()), out.begin());
+      return;
+    }
+    case PoseKind::kRig:
+      pose_vertices(poses.rig, rig_pose(poses.rig, key, model.key_count()), range, out);
+      return;
+  }
 }
 
 Aabb clip_bounds(const Model& model, std::uint32_t clip) {

@@ -14,6 +14,7 @@
 #include "common/math/affine3.h"
 #include "common/motion/appearance.h"
 #include "common/motion/pose_sequence.h"
+#include "common/motion/pose_source.h"
 #include "common/structures/kd_tree.h"
 
 namespace mdk {
@@ -54,8 +55,8 @@ struct Model {
   double rest_diagonal = 0;    ///< of the rest pose's box: the unit of residuals in reports
 
   std::span<const Clip> clips;
-  std::span<const double> key_times;     ///< F
-  std::span<const Vec3f> key_positions;  ///< F * V, key-major, world space
+  std::span<const double> key_times;  ///< F
+  PoseSource poses;
 
   std::span<const Triangle> triangles;              ///< T, sorted by cluster
   std::span<const std::uint32_t> source_triangles;  ///< T: the triangle's number in the input
@@ -82,9 +83,6 @@ struct Model {
   std::uint32_t cluster_count() const { return static_cast<std::uint32_t>(clusters.size()); }
   std::uint32_t segment_count() const { return static_cast<std::uint32_t>(segments.size()); }
 
-  std::span<const Vec3f> key_pose(std::uint32_t key) const {
-    return key_positions.subspan(static_cast<std::size_t>(key) * vertex_count, vertex_count);
-  }
   /// Maps of all clusters at a key.
   std::span<const Affine3f> key_maps(std::uint32_t key) const {
     return local_from_world.subspan(static_cast<std::size_t>(key) * clusters.size(),
@@ -122,7 +120,7 @@ struct ModelStorage {
 
   std::vector<Clip> clips;
   std::vector<double> key_times;
-  std::vector<Vec3f> key_positions;
+  PoseStorage poses;
   std::vector<Triangle> triangles;
   std::vector<std::uint32_t> source_triangles;
   std::vector<Cluster> clusters;
@@ -158,6 +156,10 @@ inline KeyInterval at_key(std::uint32_t key) { return {key, key, 0.0f}; }
 /// The segment whose boxes hold at a moment; at a key that two segments share, the earlier one.
 /// Cost: O(log segments).
 std::uint32_t segment_of(const Model& model, const KeyInterval& at);
+
+/// World positions of a range of vertices at a key; `out` has one per vertex of the range. Always
+/// the same bits, whichever ranges are asked for. Cost: O(range), and O(bones) for a rig.
+void decode_pose(const Model& model, std::uint32_t key, VertexRange range, std::span<Vec3f> out);
 
 /// A box that holds the mesh at every time of a clip. Cost: O(keys of the clip * clusters).
 Aabb clip_bounds(const Model& model, std::uint32_t clip);

@@ -5,12 +5,14 @@
 #include <string>
 #include <utility>
 
+#include "common/base/parallel.h"
 #include "common/motion/vertex_paths.h"
 
 namespace mdk {
 namespace {
 
 constexpr std::uint32_t kUnused = 0xffffffffu;
+constexpr std::size_t kKeysPerChunk = 2;
 
 void require(bool holds, const char* sentence) {
   if (!holds) throw std::logic_error(std::string("pose sequence: ") + sentence);
@@ -56,9 +58,24 @@ void check_appearance(const PoseSequence& s) {
 /// The lowest vertex that moves alike and is smoothed alike, for each vertex.
 std::vector<std::uint32_t> lowest_alike(const PoseSequence& sequence,
                                         std::span<const std::uint64_t> groups) {
+  if (sequence.rig) return lowest_alike_vertices(*sequence.rig, groups);
   std::vector<std::uint64_t> hashes = hash_paths(sequence);
   for (std::size_t i = 0; i < groups.size(); ++i) hashes[i] ^= groups[i] * 0x9e3779b97f4a7c15u;
   return lowest_equal_paths(sequence, groups, hashes);
+}
+
+/// Keeps the positions of `kept` in every pose. A pose shrinks towards the front of the list, never
+/// past poses that are still to be read; the room behind stays, since giving it back would need
+/// both at once.
+void select_rows(PoseSequence& sequence, std::span<const std::uint32_t> kept) {
+  std::vector<Vec3f> row(kept.size());
+  for (std::uint32_t key = 0; key < sequence.key_count(); ++key) {
+    const std::span<const Vec3f> pose = std::as_const(sequence).pose(key);
+    for (std::size_t i = 0; i < kept.size(); ++i) row[i] = pose[kept[i]];
+    std::ranges::copy(row,
+                      sequence.positions.begin() + static_cast<std::ptrdiff_t>(key * kept.size()));
+  }
+  sequence.positions.resize(sequence.key_times.size() * kept.size());
 }
 
 }  // namespace
@@ -67,29 +84,39 @@ void weld_vertices(PoseSequence& sequence, std::span<const std::uint64_t> smooth
   require(smoothing_groups.empty() || smoothing_groups.size() == sequence.vertex_count,
           "does not give each vertex a smoothing group");
   const std::vector<std::uint32_t> lowest = lowest_alike(sequence, smoothing_groups);
-  std::vector<std::uint32_t> kept;  // old numbers in the order of first use
-  std::vector<std::uint32_t> new_number(sequence.vertex_count, kUnused);
+  std::vector<std::uint32_t> kept;  // in the order of first use
+  std::vector<char> met(sequence.vertex_count, 0);
   for (Triangle& triangle : sequence.triangles) {
     for (std::uint32_t& v : triangle.v) {
-      std::uint32_t& number = new_number[lowest[v]];
-      if (number == kUnused) {
-        number = static_cast<std::uint32_t>(kept.size());
-        kept.push_back(lowest[v]);
-      }
-      v = number;
+      v = lowest[v];
+      if (!met[v]) kept.push_back(v);
+      met[v] = 1;
     }
   }
-  // A pose shrinks towards the front of the list, never past poses that are still to be read.
-  std::vector<Vec3f> row(kept.size());
-  for (std::uint32_t key = 0; key < sequence.key_count(); ++key) {
-    const std::span<const Vec3f> pose = std::as_const(sequence).pose(key);
-    for (std::size_t i = 0; i < kept.size(); ++i) row[i] = pose[kept[i]];
-    std::ranges::copy(row,
-                      sequence.positions.begin() + static_cast<std::ptrdiff_t>(key * kept.size()));
-  }
+  select_vertices(sequence, kept);
+}
+
+void select_vertices(PoseSequence& sequence, std::span<const std::uint32_t> kept) {
+  if (sequence.rig) sequence.rig = select_vertices(*sequence.rig, kept);
+  if (!sequence.positions.empty()) select_rows(sequence, kept);
+  std::vector<std::uint32_t> new_number(sequence.vertex_count, kUnused);
+  for (std::size_t i = 0; i < kept.size(); ++i) new_number[kept[i]] = static_cast<std::uint32_t>(i);
+  for (Triangle& triangle : sequence.triangles)
+    for (std::uint32_t& v : triangle.v) v = new_number[v];
   sequence.vertex_count = static_cast<std::uint32_t>(kept.size());
-  sequence.positions.resize(sequence.key_times.size() * kept.size());
-  sequence.positions.shrink_to_fit();
+}
+
+void decode_positions(PoseSequence& sequence) {
+  const RigView rig = sequence.rig->view();
+  sequence.positions.resize(sequence.key_times.size() * sequence.vertex_count);
+  parallel_chunks(sequence.key_times.size(), kKeysPerChunk,
+                  [&](std::size_t begin, std::size_t end) {
+                    for (std::size_t k = begin; k < end; ++k) {
+                      const auto key = static_cast<std::uint32_t>(k);
+                      pose_vertices(rig, rig_pose(rig, key, sequence.key_count()),
+                                    {0, sequence.vertex_count}, sequence.pose(key));
+                    }
+                  });
 }
 
 void check_consistency(const PoseSequence& sequence) {

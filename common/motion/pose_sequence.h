@@ -4,12 +4,14 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "common/math/vec3.h"
 #include "common/motion/appearance.h"
+#include "common/motion/rig.h"
 
 namespace mdk {
 
@@ -35,6 +37,7 @@ struct PoseSequence {
   std::vector<Clip> clips;        ///< contiguous, in key order, covering every key
   std::vector<double> key_times;  ///< per key: seconds from its clip's start, rising within a clip
   std::vector<Vec3f> positions;   ///< key-major: vertex i at key k stands at k * vertex_count + i
+  std::optional<Rig> rig;         ///< what the positions were decoded from, bit for bit
   Appearance appearance;
 
   std::uint32_t key_count() const { return static_cast<std::uint32_t>(key_times.size()); }
@@ -49,8 +52,16 @@ struct PoseSequence {
 /// Drops vertices no triangle uses and joins vertices that have the same path through all keys and
 /// the same `smoothing_group`; keeps the order of first use. Triangles keep their corners' order,
 /// so corner attributes stay valid. `smoothing_groups`: one per vertex, or empty for "all alike".
-/// Cost: O(vertices * keys).
+/// With a rig, the same path is one computed from the same numbers, and positions may still be
+/// missing. Cost: O(vertices * keys), with a rig O(vertices log vertices).
 void weld_vertices(PoseSequence& sequence, std::span<const std::uint64_t> smoothing_groups);
+
+/// Keeps the vertices `kept`, in that order, and renumbers the triangles, all of whose corners must
+/// be kept. No vertex may stand in `kept` twice. Cost: O(kept * keys).
+void select_vertices(PoseSequence& sequence, std::span<const std::uint32_t> kept);
+
+/// Decodes the positions of a sequence that has a rig.
+void decode_positions(PoseSequence& sequence);
 
 /// Throws std::logic_error where the parts do not fit together (a reader's bug, never a user's).
 void check_consistency(const PoseSequence& sequence);

@@ -8,6 +8,7 @@ namespace mdk {
 namespace {
 
 constexpr std::size_t kVerticesPerChunk = 16384;
+constexpr std::size_t kDecodedPerChunk = 2048;
 constexpr std::size_t kTrianglesPerChunk = 8192;
 constexpr Aabb kNowhere{{0, 0, 0}, {0, 0, 0}};
 
@@ -23,14 +24,30 @@ bool is_usable(const Aabb& b) {
 
 }  // namespace
 
+std::span<const Vec3f> PosedMesh::key_pose(std::uint32_t key, std::uint32_t kept) {
+  const std::uint32_t vertices = model_->vertex_count;
+  if (model_->poses.kind == PoseKind::kKeyPositions)
+    return model_->poses.key_positions.subspan(static_cast<std::size_t>(key) * vertices, vertices);
+  for (const DecodedKey& decoded : decoded_)
+    if (decoded.key == key) return decoded.positions;
+  DecodedKey& slot = decoded_[0].key == kept ? decoded_[1] : decoded_[0];
+  slot.key = key;
+  slot.positions.resize(vertices);
+  parallel_chunks(vertices, kDecodedPerChunk, [&](std::size_t begin, std::size_t end) {
+    const VertexRange range{static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end)};
+    decode_pose(*model_, key, range, std::span(slot.positions).subspan(begin, end - begin));
+  });
+  return slot.positions;
+}
+
 void PosedMesh::set_time(const KeyInterval& at) {
   at_ = at;
-  const std::span<const Vec3f> from = model_->key_pose(at.key0);
+  const std::span<const Vec3f> from = key_pose(at.key0, at.key1);
   if (at.s == 0.0f || at.key0 == at.key1) {
     positions_ = from;
     return;
   }
-  const std::span<const Vec3f> to = model_->key_pose(at.key1);
+  const std::span<const Vec3f> to = key_pose(at.key1, at.key0);
   between_.resize(from.size());
   parallel_chunks(from.size(), kVerticesPerChunk, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) between_[i] = from[i] + (to[i] - from[i]) * at.s;

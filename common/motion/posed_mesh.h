@@ -1,6 +1,8 @@
 // PosedMesh: a model's vertices at one moment.
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -8,13 +10,15 @@
 
 namespace mdk {
 
-/// The pose of `model` at an interval: v0 + s (v1 - v0), in float, per coordinate. At a key the
-/// span points into the model and nothing is computed; between keys it points into the PosedMesh.
+/// The pose of `model` at an interval: v0 + s (v1 - v0) of two decoded key poses, in float, per
+/// coordinate. The last two key poses stay decoded, so that playing decodes each key once. Where
+/// the model holds key positions, they are used in place.
 class PosedMesh {
  public:
   explicit PosedMesh(const Model& model) : model_(&model) {}
 
-  /// Moves to another moment. Cost: O(vertices) between keys, O(1) at a key. Runs in parallel.
+  /// Moves to another moment. Cost: O(vertices) between keys, and for each key that is not at hand,
+  /// decoding it. Runs in parallel.
   void set_time(const KeyInterval& at);
 
   const Model& model() const { return *model_; }
@@ -22,9 +26,18 @@ class PosedMesh {
   std::span<const Vec3f> positions() const { return positions_; }
 
  private:
+  struct DecodedKey {
+    std::optional<std::uint32_t> key;
+    std::vector<Vec3f> positions;
+  };
+
+  /// The pose at a key; what `kept` names stays decoded.
+  std::span<const Vec3f> key_pose(std::uint32_t key, std::uint32_t kept);
+
   const Model* model_;
   KeyInterval at_;
   std::span<const Vec3f> positions_;
+  DecodedKey decoded_[2];
   std::vector<Vec3f> between_;
 };
 

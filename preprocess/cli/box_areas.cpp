@@ -29,7 +29,8 @@ struct KeyAreas {
 };
 
 KeyAreas tight_area_at(const Model& model, std::uint32_t key) {
-  const auto pose = model.key_pose(key);
+  std::vector<Vec3f> pose(model.vertex_count);
+  decode_pose(model, key, {0, model.vertex_count}, pose);
   KeyAreas areas;
   Aabb whole;
   for (const Triangle& triangle : model.triangles) {

@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "common/math/vec3.h"
+#include "common/motion/posed_mesh.h"
 
 namespace mdk {
 namespace {
@@ -35,8 +36,10 @@ std::vector<CheckResult> check_source(const Model& model, const PoseSequence& so
   if (!shape.passed()) return {shape};
   CheckResult positions{"corners stand where the source has them", 0, 0, ""};
   double largest = 0;
+  PosedMesh mesh(model);
   for (std::uint32_t key = 0; key < model.key_count(); ++key) {
-    const auto baked = model.key_pose(key);
+    mesh.set_time(at_key(key));
+    const auto baked = mesh.positions();
     const auto read = source.pose(key);
     for (std::uint32_t t = 0; t < model.triangle_count(); ++t)
       for (int corner = 0; corner < 3; ++corner) {

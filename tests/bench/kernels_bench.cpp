@@ -32,7 +32,7 @@ class Sheet {
           const float x = 2 * static_cast<float>(i) / static_cast<float>(n) - 1;
           const float y = 2 * static_cast<float>(j) / static_cast<float>(n) - 1;
           const float wave = 0.05f * std::sin(9 * x + static_cast<float>(key)) * std::cos(7 * y);
-          storage_.key_positions.push_back({x, y, wave - 0.2f * (x * x + y * y)});
+          storage_.poses.key_positions.push_back({x, y, wave - 0.2f * (x * x + y * y)});
         }
     for (std::uint32_t j = 0; j < n; ++j)
       for (std::uint32_t i = 0; i < n; ++i) {

@@ -12,6 +12,7 @@
 
 #include "common/base/parallel.h"
 #include "common/motion/vertex_paths.h"
+#include "tests/common/random_rig.h"
 
 namespace mdk {
 namespace {
@@ -175,6 +176,50 @@ TEST(CheckConsistency, NamesWhatDoesNotFit) {
       EXPECT_THAT(error.what(), testing::HasSubstr(words));
     }
   }
+}
+
+/// Vertices 1 and 4 of the rig are computed from the same numbers.
+PoseSequence rigged_sequence() {
+  PoseSequence s;
+  s.vertex_count = 6;
+  s.triangles = {{{5, 4, 2}}, {{1, 2, 3}}};
+  s.clips = {{"clip", 0, 3}};
+  s.key_times = {0, 1, 2};
+  s.appearance.materials.push_back({});
+  s.appearance.triangle_materials = {0, 0};
+  s.rig = random_rig({.vertices = 6}, 21);
+  const std::vector<std::uint32_t> twins = {0, 1, 2, 3, 1, 5};
+  s.rig = select_vertices(*s.rig, twins);
+  return s;
+}
+
+TEST(WeldVertices, JoinsVerticesComputedFromTheSameNumbers) {
+  PoseSequence s = rigged_sequence();
+  weld_vertices(s, {});
+  EXPECT_EQ(s.vertex_count, 4u);
+  EXPECT_THAT(s.triangles, ElementsAre(Triangle{{0, 1, 2}}, Triangle{{1, 2, 3}}));
+}
+
+TEST(WeldVertices, KeepsRigAndPositionsInStep) {
+  PoseSequence s = rigged_sequence();
+  decode_positions(s);
+  const std::vector<Vec3f> before(s.pose(2).begin(), s.pose(2).end());
+  weld_vertices(s, {});
+  check_consistency(s);
+  EXPECT_THAT(s.pose(2), ElementsAre(before[5], before[1], before[2], before[3]));
+  const std::vector<Vec3f> positions = s.positions;
+  decode_positions(s);
+  EXPECT_EQ(s.positions, positions);
+}
+
+TEST(SelectVertices, ReordersPosesAndRenumbersTriangles) {
+  PoseSequence s = two_keys({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}},
+                            {{0, 0, 1}, {1, 0, 1}, {2, 0, 1}, {3, 0, 1}}, {{{3, 1, 2}}});
+  const std::vector<std::uint32_t> kept = {2, 3, 1};
+  select_vertices(s, kept);
+  check_consistency(s);
+  EXPECT_THAT(s.triangles, ElementsAre(Triangle{{1, 2, 0}}));
+  EXPECT_THAT(s.pose(1), ElementsAre(Vec3f{2, 0, 1}, Vec3f{3, 0, 1}, Vec3f{1, 0, 1}));
 }
 
 }  // namespace

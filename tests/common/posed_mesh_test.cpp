@@ -2,9 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <random>
+
+#include "tests/common/random_rig.h"
 
 namespace mdk {
 namespace {
@@ -18,11 +21,11 @@ ModelStorage two_keys(std::uint32_t vertices) {
   m.clips = {{"c", 0, 2}};
   m.key_times = {0, 1};
   for (std::uint32_t i = 0; i < 2 * vertices; ++i)
-    m.key_positions.push_back({unit(random), unit(random), unit(random)});
+    m.poses.key_positions.push_back({unit(random), unit(random), unit(random)});
   for (std::uint32_t i = 0; i + 2 < vertices; i += 3) m.triangles.push_back({{i, i + 1, i + 2}});
   m.cluster_world_boxes.resize(2);
-  for (std::size_t i = 0; i < m.key_positions.size(); ++i)
-    m.cluster_world_boxes[i / vertices].extend(m.key_positions[i]);
+  for (std::size_t i = 0; i < m.poses.key_positions.size(); ++i)
+    m.cluster_world_boxes[i / vertices].extend(m.poses.key_positions[i]);
   m.clusters.resize(1);
   m.clusters[0].triangle_count = static_cast<std::uint32_t>(m.triangles.size());
   return m;
@@ -33,7 +36,7 @@ TEST(PosedMesh, AtAKeyThePoseIsTheModelsOwnMemory) {
   const Model model = storage.view();
   PosedMesh mesh(model);
   mesh.set_time(at_key(1));
-  EXPECT_EQ(mesh.positions().data(), model.key_pose(1).data());
+  EXPECT_EQ(mesh.positions().data(), &model.poses.key_positions[30]);
 }
 
 TEST(PosedMesh, BetweenKeysVerticesMoveLinearly) {
@@ -42,9 +45,58 @@ TEST(PosedMesh, BetweenKeysVerticesMoveLinearly) {
   PosedMesh mesh(model);
   mesh.set_time({0, 1, 0.25f});
   for (std::uint32_t i = 0; i < 30; ++i) {
-    const Vec3f a = model.key_pose(0)[i], b = model.key_pose(1)[i];
+    const Vec3f a = model.poses.key_positions[i], b = model.poses.key_positions[30 + i];
     EXPECT_FLOAT_EQ(mesh.positions()[i].x, a.x + 0.25f * (b.x - a.x));
     EXPECT_FLOAT_EQ(mesh.positions()[i].z, a.z + 0.25f * (b.z - a.z));
+  }
+}
+
+/// Four keys, a rig of wild numbers.
+ModelStorage rigged(std::uint32_t vertices) {
+  ModelStorage m = two_keys(vertices);
+  m.clips = {{"c", 0, 4}};
+  m.key_times = {0, 1, 2, 3};
+  m.poses = {PoseKind::kRig, {}, random_rig({.vertices = vertices, .keys = 4}, 5)};
+  return m;
+}
+
+TEST(PosedMesh, DecodedPosesDoNotDependOnWhatWasDecodedBefore) {
+  const ModelStorage storage = rigged(5000);
+  const Model model = storage.view();
+  PosedMesh wandering(model);
+  for (const KeyInterval& at :
+       {at_key(2), KeyInterval{1, 2, 0.5f}, KeyInterval{2, 3, 0.25f}, at_key(3), at_key(0),
+        KeyInterval{0, 1, 0.75f}, KeyInterval{2, 3, 0.5f}, at_key(2), KeyInterval{1, 2, 0.5f}}) {
+    wandering.set_time(at);
+    PosedMesh fresh(model);
+    fresh.set_time(at);
+    ASSERT_TRUE(std::ranges::equal(wandering.positions(), fresh.positions()))
+        << at.key0 << " " << at.key1 << " " << at.s;
+  }
+}
+
+TEST(PosedMesh, BetweenKeysDecodedVerticesMoveLinearly) {
+  const ModelStorage storage = rigged(100);
+  const Model model = storage.view();
+  std::vector<Vec3f> from(100), to(100);
+  decode_pose(model, 1, {0, 100}, from);
+  decode_pose(model, 2, {0, 100}, to);
+  PosedMesh mesh(model);
+  mesh.set_time({1, 2, 0.25f});
+  for (std::size_t i = 0; i < from.size(); ++i)
+    EXPECT_EQ(mesh.positions()[i], from[i] + (to[i] - from[i]) * 0.25f);
+}
+
+TEST(PosedMesh, AnyRangeOfVerticesDecodesToTheSameBits) {
+  const ModelStorage rig = rigged(300), keys = two_keys(300);
+  for (const Model& model : {rig.view(), keys.view()}) {
+    std::vector<Vec3f> all(300), part(300);
+    decode_pose(model, 1, {0, 300}, all);
+    for (const VertexRange range : {VertexRange{0, 1}, {17, 17}, {5, 130}, {299, 300}}) {
+      decode_pose(model, 1, range, std::span(part).first(range.size()));
+      for (std::uint32_t i = 0; i < range.size(); ++i)
+        ASSERT_EQ(part[i], all[range.begin + i]) << range.begin;
+    }
   }
 }
 
@@ -65,8 +117,8 @@ TEST(PosedMesh, TriangleBoxesHoldTheirCornersTightly) {
 TEST(PosedMesh, BoxesAreFiniteWhateverTheCornersAre) {
   ModelStorage storage = two_keys(9);
   const float inf = std::numeric_limits<float>::infinity();
-  storage.key_positions[1] = {std::nanf(""), 0, 0};
-  for (int i = 3; i < 6; ++i) storage.key_positions[i] = {std::nanf(""), inf, -inf};
+  storage.poses.key_positions[1] = {std::nanf(""), 0, 0};
+  for (int i = 3; i < 6; ++i) storage.poses.key_positions[i] = {std::nanf(""), inf, -inf};
   const Model model = storage.view();
   PosedMesh mesh(model);
   mesh.set_time(at_key(0));

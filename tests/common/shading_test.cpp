@@ -82,8 +82,8 @@ ModelStorage colored_square() {
   m.vertex_count = 4;
   m.clips = {{"still", 0, 1}};
   m.key_times = {0};
-  m.key_positions = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
-  for (const Vec3f& p : m.key_positions) m.bounds.extend(p);
+  m.poses.key_positions = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
+  for (const Vec3f& p : m.poses.key_positions) m.bounds.extend(p);
   m.triangles = {{{0, 1, 2}}, {{0, 2, 3}}};
   m.source_triangles = {0, 1};
   m.clusters.resize(1);

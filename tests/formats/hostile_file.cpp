@@ -12,7 +12,6 @@
 #include "formats/mdk_view.h"
 #include "formats/mdk_writer.h"
 #include "tests/formats/mdk_image.h"
-#include "tests/formats/sample_model.h"
 
 namespace mdk::test {
 namespace {
@@ -26,7 +25,15 @@ ModelStorage copy_of(const Model& model) {
   const auto copy_list = [](auto& to, auto from) { to.assign(from.begin(), from.end()); };
   copy_list(copy.clips, model.clips);
   copy_list(copy.key_times, model.key_times);
-  copy_list(copy.key_positions, model.key_positions);
+  copy.poses.kind = model.poses.kind;
+  copy_list(copy.poses.key_positions, model.poses.key_positions);
+  copy_list(copy.poses.rig.base_positions, model.poses.rig.base_positions);
+  copy_list(copy.poses.rig.first_weight, model.poses.rig.first_weight);
+  copy_list(copy.poses.rig.bone_weights, model.poses.rig.bone_weights);
+  copy_list(copy.poses.rig.first_offset, model.poses.rig.first_offset);
+  copy_list(copy.poses.rig.morph_offsets, model.poses.rig.morph_offsets);
+  copy_list(copy.poses.rig.bone_maps, model.poses.rig.bone_maps);
+  copy_list(copy.poses.rig.target_weights, model.poses.rig.target_weights);
   copy_list(copy.triangles, model.triangles);
   copy_list(copy.source_triangles, model.source_triangles);
   copy_list(copy.clusters, model.clusters);
@@ -48,8 +55,8 @@ ModelStorage copy_of(const Model& model) {
 
 }  // namespace
 
-HostileFile::HostileFile() : path_(folder_.file("sample.mdk")) {
-  write_mdk(sample_model().view(), path_);
+HostileFile::HostileFile(const ModelStorage& sample) : path_(folder_.file("sample.mdk")) {
+  write_mdk(sample.view(), path_);
   bytes_ = read_bytes(path_);
   descriptor_ = ::open(path_.c_str(), O_RDWR | O_CLOEXEC);
 }

@@ -1,4 +1,4 @@
-// HostileFile: the sample's .mdk file, damaged again and again, and what opening it gives.
+// HostileFile: a sample's .mdk file, damaged again and again, and what opening it gives.
 #pragma once
 
 #include <cstddef>
@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "common/motion/model.h"
+#include "tests/formats/sample_model.h"
 #include "tests/formats/temp_folder.h"
 
 namespace mdk::test {
@@ -20,7 +21,7 @@ struct ByteRange {
 
 class HostileFile {
  public:
-  HostileFile();
+  explicit HostileFile(const ModelStorage& sample = sample_model());
   ~HostileFile();
   HostileFile(const HostileFile&) = delete;
   HostileFile& operator=(const HostileFile&) = delete;

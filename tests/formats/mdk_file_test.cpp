@@ -45,6 +45,18 @@ void expect_same(const char* name, std::span<const T> mapped, const std::vector<
   EXPECT_EQ(reinterpret_cast<std::uintptr_t>(mapped.data()) % 64, 0u) << name;
 }
 
+void expect_same_poses(const PoseSource& mapped, const PoseStorage& original) {
+  EXPECT_EQ(mapped.kind, original.kind);
+  expect_same("key_positions", mapped.key_positions, original.key_positions);
+  expect_same("base_positions", mapped.rig.base_positions, original.rig.base_positions);
+  expect_same("first_weight", mapped.rig.first_weight, original.rig.first_weight);
+  expect_same("bone_weights", mapped.rig.bone_weights, original.rig.bone_weights);
+  expect_same("first_offset", mapped.rig.first_offset, original.rig.first_offset);
+  expect_same("morph_offsets", mapped.rig.morph_offsets, original.rig.morph_offsets);
+  expect_same("bone_maps", mapped.rig.bone_maps, original.rig.bone_maps);
+  expect_same("target_weights", mapped.rig.target_weights, original.rig.target_weights);
+}
+
 void expect_same_model(const Model& mapped, const ModelStorage& original) {
   EXPECT_EQ(mapped.vertex_count, original.vertex_count);
   EXPECT_EQ(mapped.rest_key, original.rest_key);
@@ -52,7 +64,7 @@ void expect_same_model(const Model& mapped, const ModelStorage& original) {
   EXPECT_EQ(mapped.rest_diagonal, original.rest_diagonal);
   EXPECT_THAT(mapped.clips, testing::ElementsAreArray(original.clips));
   expect_same("key_times", mapped.key_times, original.key_times);
-  expect_same("key_positions", mapped.key_positions, original.key_positions);
+  expect_same_poses(mapped.poses, original.poses);
   expect_same("triangles", mapped.triangles, original.triangles);
   expect_same("source_triangles", mapped.source_triangles, original.source_triangles);
   expect_same("clusters", mapped.clusters, original.clusters);
@@ -78,6 +90,20 @@ TEST_F(MdkFileTest, GivesBackEveryListAndNumber) {
   const MdkFile file(written(original));
   expect_same_model(file.model(), original);
   EXPECT_EQ(file.path(), path_);
+}
+
+TEST_F(MdkFileTest, GivesBackARigAndThePosesItStandsFor) {
+  const ModelStorage original = sample_rig_model(), keys = sample_model();
+  const MdkFile file(written(original));
+  const Model& model = file.model();
+  expect_same_model(model, original);
+  for (std::uint32_t key = 0; key < model.key_count(); ++key) {
+    std::vector<Vec3f> pose(model.vertex_count);
+    decode_pose(model, key, {0, model.vertex_count}, pose);
+    EXPECT_THAT(pose,
+                testing::ElementsAreArray(
+                    std::span(keys.poses.key_positions).subspan(key * pose.size(), pose.size())));
+  }
 }
 
 TEST_F(MdkFileTest, GivesBackAModelWithoutAnyOptionalList) {
@@ -115,7 +141,7 @@ TEST_F(MdkFileTest, HeaderIsAsSpecified) {
   const Bytes magic = {0x89, 'M', 'D', 'K', 0x0d, 0x0a, 0x1a, 0x0a, 4, 3, 2, 1, 2, 0, 0, 0};
   EXPECT_EQ(Bytes(bytes.begin(), bytes.begin() + 16), magic);
   EXPECT_EQ(get<std::uint64_t>(bytes, 16), bytes.size());
-  EXPECT_EQ(get<std::uint32_t>(bytes, 24), 21u);
+  EXPECT_EQ(get<std::uint32_t>(bytes, 24), 28u);
   EXPECT_THAT(Bytes(bytes.begin() + 28, bytes.begin() + 56), testing::Each(0));
   Bytes resealed = bytes;
   seal(resealed);
@@ -183,7 +209,7 @@ TEST_F(MdkFileTest, RecordsAreAsSpecified) {
 
 TEST_F(MdkFileTest, ListsItsSectionsByName) {
   const auto sections = MdkFile(written(sample_model())).sections();
-  ASSERT_EQ(sections.size(), 21u);
+  ASSERT_EQ(sections.size(), 28u);
   EXPECT_EQ(sections.front().name, "model");
   EXPECT_EQ(sections.front().bytes, 64u);
   EXPECT_EQ(sections.back().name, "key_positions");
@@ -212,9 +238,9 @@ TEST_F(MdkFileTest, OverwritingTheFileLeavesOpenOnesAsTheyWere) {
 
 TEST_F(MdkFileTest, OpensPositionsThatAreNotNumbersAndKeepsTheirChecksum) {
   ModelStorage storage = sample_model();
-  storage.key_positions[7].y = std::numeric_limits<float>::quiet_NaN();
+  storage.poses.key_positions[7].y = std::numeric_limits<float>::quiet_NaN();
   const MdkFile file(written(storage));
-  EXPECT_TRUE(std::isnan(file.model().key_pose(0)[7].y));
+  EXPECT_TRUE(std::isnan(file.model().poses.key_positions[7].y));
   EXPECT_NO_THROW(file.verify_checksums());
 }
 

@@ -8,6 +8,7 @@
 #include <cstring>
 #include <iterator>
 #include <optional>
+#include <vector>
 
 #include "tests/formats/hostile_file.h"
 #include "tests/formats/mdk_image.h"
@@ -21,7 +22,7 @@ constexpr std::size_t kOffsetOfFileSize = 16;
 /// is optimised away.
 class Walk {
  public:
-  explicit Walk(const Model& model) : model_(model) {}
+  explicit Walk(const Model& model) : model_(model), poses_(model.key_count()) {}
 
   std::uint64_t everything() {
     for (std::uint32_t clip = 0; clip < model_.clips.size(); ++clip) times(clip);
@@ -46,6 +47,15 @@ class Walk {
     for (const unsigned char byte : bytes) digest_ = digest_ * 31 + byte;
   }
 
+  /// Decoded when it is first asked for.
+  const std::vector<Vec3f>& pose(std::uint32_t key) {
+    if (poses_[key].empty()) {
+      poses_[key].resize(model_.vertex_count);
+      decode_pose(model_, key, {0, model_.vertex_count}, poses_[key]);
+    }
+    return poses_[key];
+  }
+
   void times(std::uint32_t clip) {
     const double end = model_.clip_seconds(model_.clips[clip]);
     for (const double seconds : {-1.0, 0.0, end / 3, end / 2, std::nextafter(end, 0.0), end,
@@ -56,8 +66,8 @@ class Walk {
       ASSERT_LT(segment, model_.segment_count());
       EXPECT_LE(model_.segments[segment].first_key, at.key0);
       EXPECT_GE(model_.segments[segment].last_key, at.key1);
-      see(model_.key_pose(at.key0).back());
-      see(model_.key_pose(at.key1).back());
+      see(pose(at.key0).back());
+      see(pose(at.key1).back());
     }
   }
 
@@ -83,7 +93,7 @@ class Walk {
 
   void corners(std::uint32_t triangle, std::span<const Aabb> boxes) {
     for (const std::uint32_t v : model_.triangles[triangle].v) {
-      for (std::uint32_t key = 0; key < model_.key_count(); ++key) see(model_.key_pose(key)[v]);
+      for (std::uint32_t key = 0; key < model_.key_count(); ++key) see(pose(key)[v]);
     }
     see(boxes[triangle]);
   }
@@ -106,6 +116,7 @@ class Walk {
   }
 
   const Model& model_;
+  std::vector<std::vector<Vec3f>> poses_;
   std::uint64_t digest_ = 0;
 };
 
@@ -125,15 +136,27 @@ struct Tally {
   }
 };
 
-TEST(MdkHostile, TheUndamagedFileCanBeWalked) {
-  HostileFile file;
+struct Sample {
+  const char* name;
+  ModelStorage (*make)();
+};
+
+class MdkHostile : public testing::TestWithParam<Sample> {};
+
+INSTANTIATE_TEST_SUITE_P(Poses, MdkHostile,
+                         testing::Values(Sample{"KeyPositions", sample_model},
+                                         Sample{"Rig", sample_rig_model}),
+                         [](const auto& tested) { return tested.param.name; });
+
+TEST_P(MdkHostile, TheUndamagedFileCanBeWalked) {
+  HostileFile file(GetParam().make());
   Tally tally;
   tally.add(file.open(file.bytes()));
   EXPECT_EQ(tally.walked, 1u);
 }
 
-TEST(MdkHostile, AFileCutAtAnyLengthIsRefused) {
-  HostileFile file;
+TEST_P(MdkHostile, AFileCutAtAnyLengthIsRefused) {
+  HostileFile file(GetParam().make());
   Bytes cut = file.bytes();
   while (!cut.empty()) {
     cut.pop_back();
@@ -141,8 +164,8 @@ TEST(MdkHostile, AFileCutAtAnyLengthIsRefused) {
   }
 }
 
-TEST(MdkHostile, AFileCutAtAnyLengthWithAMatchingHeaderIsRefusedOrSafe) {
-  HostileFile file;
+TEST_P(MdkHostile, AFileCutAtAnyLengthWithAMatchingHeaderIsRefusedOrSafe) {
+  HostileFile file(GetParam().make());
   Tally tally;
   Bytes cut = file.bytes();
   while (cut.size() > kHeaderBytes) {
@@ -155,8 +178,8 @@ TEST(MdkHostile, AFileCutAtAnyLengthWithAMatchingHeaderIsRefusedOrSafe) {
   EXPECT_EQ(tally.walked, padding) << "nothing but padding may be missing";
 }
 
-TEST(MdkHostile, AnyBitFlippedInHeaderOrTableIsRefused) {
-  HostileFile file;
+TEST_P(MdkHostile, AnyBitFlippedInHeaderOrTableIsRefused) {
+  HostileFile file(GetParam().make());
   const ByteRange table = file.ranges().front();
   for (std::size_t at = table.begin; at < table.end; ++at) {
     for (int bit = 0; bit < 8; ++bit) {
@@ -166,8 +189,8 @@ TEST(MdkHostile, AnyBitFlippedInHeaderOrTableIsRefused) {
   }
 }
 
-TEST(MdkHostile, AnyBitFlippedAnywhereAndResealedIsRefusedOrSafe) {
-  HostileFile file;
+TEST_P(MdkHostile, AnyBitFlippedAnywhereAndResealedIsRefusedOrSafe) {
+  HostileFile file(GetParam().make());
   for (const ByteRange& range : file.ranges()) {
     Tally tally;
     for (std::size_t at = range.begin; at < range.end; ++at) {
@@ -181,14 +204,14 @@ TEST(MdkHostile, AnyBitFlippedAnywhereAndResealedIsRefusedOrSafe) {
     }
     const bool may_hold_anything = range.name == "POSE" || range.name == "UVCO" ||
                                    range.name == "COLR" || range.name == "TEXL";
-    if (!may_hold_anything) {
+    if (!may_hold_anything && range.end > range.begin) {
       EXPECT_GT(tally.refused, 0u) << range.name << " is not checked at all";
     }
   }
 }
 
-TEST(MdkHostile, AnyWordReplacedByAnExtremeAndResealedIsRefusedOrSafe) {
-  HostileFile file;
+TEST_P(MdkHostile, AnyWordReplacedByAnExtremeAndResealedIsRefusedOrSafe) {
+  HostileFile file(GetParam().make());
   Tally tally;
   for (const ByteRange& range : file.ranges()) {
     for (std::size_t at = range.begin; at + 4 <= range.end; at += 4) {
@@ -203,8 +226,8 @@ TEST(MdkHostile, AnyWordReplacedByAnExtremeAndResealedIsRefusedOrSafe) {
   EXPECT_GT(tally.walked, 0u);
 }
 
-TEST(MdkHostile, SectionsThatShareBytesAreRefusedOrSafe) {
-  HostileFile file;
+TEST_P(MdkHostile, SectionsThatShareBytesAreRefusedOrSafe) {
+  HostileFile file(GetParam().make());
   Tally tally;
   const auto table = read_table(file.bytes());
   for (const ImageSection& moved : table) {

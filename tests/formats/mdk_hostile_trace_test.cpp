@@ -3,7 +3,9 @@
 // is not.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdio>
+#include <iterator>
 #include <optional>
 
 #include "common/base/parallel.h"
@@ -72,14 +74,25 @@ TEST(MdkHostileTrace, PositionsThatAreNoNumbersAtAllCanBeRendered) {
   }
 }
 
-TEST(MdkHostileTrace, AnyDamageThatOpensCanBeRendered) {
+/// A section that holds the poses of one kind: tried on the sample of that kind.
+bool is_tried(const ByteRange& range, PoseKind kind) {
+  static constexpr const char* kRigSections[] = {"BONE", "TGTW", "BASE", "BWFI",
+                                                 "BWGT", "MOFI", "MOFF"};
+  const bool of_rig = std::ranges::find(kRigSections, range.name) != std::end(kRigSections);
+  return of_rig == (kind == PoseKind::kRig);
+}
+
+class MdkHostileTraceOfPoses : public testing::TestWithParam<PoseKind> {};
+
+TEST_P(MdkHostileTraceOfPoses, AnyDamageThatOpensCanBeRendered) {
   const ThreadLimit one_thread(1);  // the frames are tiny
-  HostileFile file;
+  HostileFile file(GetParam() == PoseKind::kRig ? sample_rig_model() : sample_model());
   std::size_t refused = 0, rendered = 0;
   const auto words = extreme_words();
   std::size_t turn =
       0;  // goes through the extremes four at a time: all at every place take minutes
   for (const ByteRange& range : file.ranges()) {
+    if (!is_tried(range, GetParam())) continue;
     for (std::size_t at = range.begin; at + 4 <= range.end; at += 4) {
       for (int i = 0; i < 4; ++i) {
         const std::uint32_t word = words[turn++ % words.size()];
@@ -98,6 +111,9 @@ TEST(MdkHostileTrace, AnyDamageThatOpensCanBeRendered) {
   std::printf("%zu refused, %zu rendered\n", refused, rendered);
   EXPECT_GT(rendered, refused / 2);
 }
+
+INSTANTIATE_TEST_SUITE_P(Kinds, MdkHostileTraceOfPoses,
+                         testing::Values(PoseKind::kKeyPositions, PoseKind::kRig));
 
 }  // namespace
 }  // namespace mdk::test

@@ -32,7 +32,7 @@ std::vector<Fault> count_faults() {
       {"no_vertices", "vertices: 0", [](M m) { m.vertex_count = 0; }},
       {"too_many_vertices", "vertices: 1073741824", [](M m) { m.vertex_count = 1u << 30; }},
       {"other_vertex_count", "key_positions: 30 of them, not 33", [](M m) { m.vertex_count = 11; }},
-      {"positions_cut", "key_positions: 29", [](M m) { m.key_positions.pop_back(); }},
+      {"positions_cut", "key_positions: 29", [](M m) { m.poses.key_positions.pop_back(); }},
       {"no_keys", "key_times: 0", [](M m) { m.key_times.clear(); }},
       {"no_triangles", "triangles: 0", [](M m) { m.triangles.clear(); }},
       {"no_clusters", "clusters: 0", [](M m) { m.clusters.clear(); }},

@@ -10,7 +10,8 @@ constexpr float kRise = 0.5f;  // of cluster 0, per key
 /// Vertices of one strip zigzag between y = base and y = base + 1 along x, at z.
 void append_strip_vertices(ModelStorage& model, float base, float z, std::uint32_t triangles) {
   for (std::uint32_t i = 0; i < triangles + 2; ++i) {
-    model.key_positions.push_back({static_cast<float>(i / 2), base + static_cast<float>(i % 2), z});
+    model.poses.key_positions.push_back(
+        {static_cast<float>(i / 2), base + static_cast<float>(i % 2), z});
   }
 }
 
@@ -61,7 +62,7 @@ void add_clusters(ModelStorage& model) {
     for (std::uint32_t i = 0; i < cluster.triangle_count; ++i) {
       Aabb box;
       for (const std::uint32_t v : model.triangles[cluster.first_triangle + i].v) {
-        box.extend(model.key_positions[v]);
+        box.extend(model.poses.key_positions[v]);
       }
       model.fuzzy_boxes.push_back(box);
     }
@@ -91,6 +92,30 @@ void add_appearance(ModelStorage& model) {
   }
 }
 
+/// Strip 0 rises half by its bone and half by a morph target; strip 1 hangs on a bone that rests.
+Rig sample_rig(const ModelStorage& model) {
+  Rig rig;
+  rig.first_weight = rig.first_offset = {0};
+  for (std::uint32_t v = 0; v < model.vertex_count; ++v) {
+    rig.base_positions.push_back(model.poses.key_positions[v]);
+    if (v < kTrianglesPerStrip[0] + 2) {
+      rig.bone_weights.insert(rig.bone_weights.end(), {{0, 0.25f}, {2, 0.75f}});
+      rig.morph_offsets.push_back({0, {0, kRise / 2, 0}});
+    } else {
+      rig.bone_weights.push_back({1, 1.0f});
+    }
+    rig.first_weight.push_back(static_cast<std::uint32_t>(rig.bone_weights.size()));
+    rig.first_offset.push_back(static_cast<std::uint32_t>(rig.morph_offsets.size()));
+  }
+  for (std::uint32_t key = 0; key < kKeys; ++key) {
+    Affine3f half_way;
+    half_way.m[1][3] = kRise / 2 * static_cast<float>(key);
+    rig.bone_maps.insert(rig.bone_maps.end(), {half_way, Affine3f{}, half_way});
+    rig.target_weights.push_back(static_cast<float>(key));
+  }
+  return rig;
+}
+
 }  // namespace
 
 ModelStorage sample_model() {
@@ -98,6 +123,12 @@ ModelStorage sample_model() {
   add_geometry(model);
   add_clusters(model);
   add_appearance(model);
+  return model;
+}
+
+ModelStorage sample_rig_model() {
+  ModelStorage model = sample_model();
+  model.poses = {PoseKind::kRig, {}, sample_rig(model)};
   return model;
 }
 

@@ -10,4 +10,8 @@ namespace mdk::test {
 /// empty leaf, cluster 1's is one leaf. No list of the model is empty.
 ModelStorage sample_model();
 
+/// The same model, its poses stored as a rig of 3 bones and a morph target that gives the same
+/// positions. Only the list of key positions is empty.
+ModelStorage sample_rig_model();
+
 }  // namespace mdk::test

@@ -106,7 +106,7 @@ ModelStorage adversarial_model(std::uint32_t seed) {
   model.triangles = sequence.triangles;
   model.clips = sequence.clips;
   model.key_times = sequence.key_times;
-  model.key_positions = sequence.positions;
+  model.poses.key_positions = sequence.positions;
   model.clusters.resize(1);
   model.clusters[0].triangle_count = static_cast<std::uint32_t>(model.triangles.size());
   std::uniform_int_distribution<std::uint32_t> any_number(0, 7);
@@ -129,7 +129,7 @@ std::vector<Aabb> boxes_over_keys_only(const ModelStorage& model) {
   sequence.triangles = model.triangles;
   sequence.clips = model.clips;
   sequence.key_times = model.key_times;
-  sequence.positions = model.key_positions;
+  sequence.positions = model.poses.key_positions;
   std::vector<std::uint32_t> cluster_of_triangle;
   for (std::uint32_t c = 0; c < model.clusters.size(); ++c)
     cluster_of_triangle.resize(cluster_of_triangle.size() + model.clusters[c].triangle_count, c);

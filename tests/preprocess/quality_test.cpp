@@ -26,7 +26,7 @@ double median_area_ratio(const ModelStorage& model, std::span<const Aabb> boxes)
   for (std::size_t k = 0; k < keys; ++k) {
     Aabbd box;
     for (std::size_t v = 0; v < model.vertex_count; ++v)
-      box.extend(to_double(model.key_positions[k * model.vertex_count + v]));
+      box.extend(to_double(model.poses.key_positions[k * model.vertex_count + v]));
     for (std::size_t c = 0; c < clusters; ++c)
       ratios[k] +=
           sums[c].area(world_area_weights(to_double(model.local_from_world[k * clusters + c])));
@@ -43,7 +43,7 @@ std::vector<Aabb> boxes_over_keys_only(const ModelStorage& model) {
   sequence.triangles = model.triangles;
   sequence.clips = model.clips;
   sequence.key_times = model.key_times;
-  sequence.positions = model.key_positions;
+  sequence.positions = model.poses.key_positions;
   std::vector<std::uint32_t> cluster_of_triangle;
   for (std::uint32_t c = 0; c < model.clusters.size(); ++c)
     cluster_of_triangle.resize(cluster_of_triangle.size() + model.clusters[c].triangle_count, c);
