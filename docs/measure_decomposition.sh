@@ -2,8 +2,9 @@
 # How good decompositions are: bakes every sample by the paper's method and by ours, traces both beside
 # static kd-trees, and writes docs/results/decomposition.md with its plot and pictures.
 #
-#   docs/measure_decomposition.sh [-o FOLDER] [MODEL…]
+#   docs/measure_decomposition.sh [-o FOLDER] [-p | MODEL…]
 #
+# -p: measure nothing, write page and pictures again from what was measured last.
 # MODEL: some of hand ben chicken cow dolphin cloth ball, and, where MDK_TEST_DATA names a folder with
 # sequences/NAME.obj and NAME.pc2: real-cow real-crane real-elephant real-horse (default: all there are).
 # What was measured stays in build/release/decomposition: models not named keep their last figures.
@@ -23,6 +24,8 @@ if [[ ${1:-} == -o ]]; then
   results=$2
   shift 2
 fi
+page_only=
+if [[ ${1:-} == -p ]]; then page_only=1; fi
 work=$build/decomposition
 mkdir -p "$work" "$results/images"
 
@@ -87,7 +90,9 @@ take_pictures() {
 }
 
 all=(hand ben chicken cow dolphin cloth ball real-cow real-crane real-elephant real-horse)
-for name in "${@:-${all[@]}}"; do
+if (($# == 0)); then set -- "${all[@]}"; fi
+if [[ $page_only ]]; then set --; fi
+for name in "$@"; do
   files=$(source_of "$name")
   [[ -n $files ]] || continue
   if [[ $files == "$build/samples"* && ! -f ${files%% *} ]]; then
@@ -103,6 +108,9 @@ measured=()
 for name in "${all[@]}"; do
   if [[ -f $work/$name.auto.json ]]; then measured+=("$name"); fi
 done
+if [[ $page_only ]]; then
+  for name in "${measured[@]}"; do take_pictures "$name"; done
+fi
 
 # row MODEL FILTER: the filter sees {paper, ours, auto} and gives the cells.
 row() {
@@ -171,7 +179,7 @@ growth_plot() {
 </style>
 <rect class="ground" width="100%" height="100%"/>
 SVG
-    cat "$work/panels.svg"
+    grep -v '^<!--' "$work/panels.svg"
     printf '<g transform="translate(46 %d)"><path class="residual" d="M0 0h24"/><text x="30" y="3">rms residual</text>' \
       $((rows * 174 + 22))
     printf '<path class="cost" d="M130 0h24"/><text x="160" y="3">cost</text></g>\n</svg>\n'
