@@ -30,16 +30,6 @@ constexpr std::size_t kResidualGrowthEntries = 250'000;
 constexpr std::size_t kResidualPolishEntries = 8'000'000;
 constexpr LloydOptions kResidualPolish = {.min_gain = 0.002, .max_rounds = 8};
 
-PoseTable sampled_table(const PoseSequence& sequence, std::size_t count,
-                        std::optional<std::uint32_t> also, double unit) {
-  KeySamplingOptions sampling;
-  sampling.count = static_cast<std::uint32_t>(std::min<std::size_t>(count, sequence.key_count()));
-  std::vector<std::uint32_t> keys = sample_keys(sequence, sampling);
-  if (also && !std::binary_search(keys.begin(), keys.end(), *also))
-    keys.insert(std::lower_bound(keys.begin(), keys.end(), *also), *also);
-  return make_pose_table(sequence, keys, unit);
-}
-
 /// Every n-th triangle of a mesh with the vertices they use.
 struct ThinnedMesh {
   PoseTable poses;

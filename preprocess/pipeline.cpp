@@ -3,15 +3,21 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <numbers>
+#include <optional>
 #include <span>
 #include <utility>
 
 #include "common/base/error.h"
 #include "common/base/parallel.h"
 #include "common/base/stopwatch.h"
+#include "preprocess/bone_clusters.h"
+#include "preprocess/bone_maps.h"
 #include "preprocess/key_maps.h"
+#include "preprocess/key_sampling.h"
 #include "preprocess/model_assembly.h"
 #include "preprocess/motion_clusters.h"
+#include "preprocess/pose_space.h"
 #include "preprocess/pose_table.h"
 #include "preprocess/segments.h"
 
@@ -22,6 +28,8 @@ constexpr std::uint32_t kMaxClusters = 1024;
 constexpr double kDecomposedAt = 0.85;  // share of the whole job, for progress alone
 constexpr double kClusteredAt = 0.8, kMappedAt = 0.95;  // shares of the decomposition
 constexpr double kWildGrowth = 1.5;                     // of the boxes from keys to all times
+constexpr std::size_t kBoneEntries = 2'000'000;  // keys times vertices that bones are chosen on
+constexpr std::size_t kMinBoneKeys = 10, kMaxBoneKeys = 200;
 constexpr float kLargestCoordinate = 1e15f;  // areas and volumes must stay far inside float
 
 void check_positions(const PoseSequence& sequence) {
@@ -38,6 +46,23 @@ void check_positions(const PoseSequence& sequence) {
                     "the animation");
     }
   });
+}
+
+void check_bone_options(const PoseSequence& sequence, const DecomposeOptions& options) {
+  if (options.mode == DecomposeMode::kBones && !sequence.rig)
+    throw Error(ErrorCode::kBadInput,
+                "the animation has no bones, only positions: bake it with --decompose motion");
+  if (options.sampling == PoseSampling::kCycle) return;
+  if (options.mode != DecomposeMode::kBones)
+    throw Error(ErrorCode::kUsage, "--sampling pose-space needs --decompose bones");
+  if (!sequence.skeleton)
+    throw Error(ErrorCode::kBadInput,
+                "the animation has no skeleton to pose: bake it with --sampling cycle");
+  if (!(options.joint_limit_degrees >= 0 && options.joint_limit_degrees <= 180))
+    throw Error(ErrorCode::kUsage, "the joints' limit must be from 0 to 180 degrees");
+  if (options.segments > 1)
+    throw Error(ErrorCode::kUsage,
+                "a pose space has no time to be cut into segments: leave --segments out");
 }
 
 void check_input(const PoseSequence& sequence, const DecomposeOptions& options) {
@@ -57,6 +82,7 @@ void check_input(const PoseSequence& sequence, const DecomposeOptions& options) 
                                        std::to_string(most));
   if (options.stop_percent && !(*options.stop_percent >= 0 && *options.stop_percent < 100))
     throw Error(ErrorCode::kUsage, "the stop threshold must be a percentage from 0 to below 100");
+  check_bone_options(sequence, options);
   check_consistency(sequence);
   check_positions(sequence);
 }
@@ -106,19 +132,51 @@ struct Decomposition {
   MotionClusters clusters;
   ClusterMembers members;
   KeyMaps maps;
+  std::vector<ClusterBone> bones;  ///< K, of bones' clusters
 };
 
 Decomposition with_maps(const PoseSequence& sequence, MotionClusters clusters,
                         const DecomposeOptions& options, ProgressSink& progress) {
-  Decomposition result{std::move(clusters), {}, {}};
+  Decomposition result{std::move(clusters), {}, {}, {}};
   result.members = make_cluster_members(sequence.triangles, result.clusters.cluster_of_triangle,
                                         result.clusters.cluster_count, sequence.vertex_count);
   result.maps = decide_maps(sequence, result.clusters, result.members, options, progress);
   return result;
 }
 
+void set_limits(Skeleton& skeleton, double degrees) {
+  constexpr float kMost = std::numbers::pi_v<float>;
+  for (Joint& joint : skeleton.joints)
+    joint.limit = std::min(kMost, static_cast<float>(degrees * std::numbers::pi / 180));
+}
+
+PoseSpace pose_space_of(const PoseSequence& sequence) {
+  return {sequence.skeleton->view(), sequence.rig->view(), sequence.key_count()};
+}
+
+Decomposition follow_bones(const PoseSequence& sequence, const DecomposeOptions& options,
+                           double unit) {
+  Decomposition result;
+  result.clusters.rest_key = options.rest_key.value_or(0);
+  result.clusters.stop_reason = "bones";
+  const std::size_t affordable = kBoneEntries / std::max(1u, sequence.vertex_count);
+  const PoseTable table = sampled_table(
+      sequence, std::clamp(affordable, kMinBoneKeys, kMaxBoneKeys), result.clusters.rest_key, unit);
+  std::optional<PoseSpace> space;
+  if (sequence.skeleton) space = pose_space_of(sequence);
+  BoneClusters clusters = assign_to_bones(sequence, table.keys, space ? &*space : nullptr);
+  result.clusters.cluster_count = static_cast<std::uint32_t>(clusters.bones.size());
+  result.clusters.cluster_of_triangle = std::move(clusters.cluster_of_triangle);
+  result.members = make_cluster_members(sequence.triangles, result.clusters.cluster_of_triangle,
+                                        result.clusters.cluster_count, sequence.vertex_count);
+  result.bones = choose_bone_bases(sequence, table, result.members, clusters.bones);
+  result.maps = bone_key_maps(sequence, result.bones);
+  return result;
+}
+
 Decomposition decide(const PoseSequence& sequence, const DecomposeOptions& options, double unit,
                      ProgressSink& progress) {
+  if (options.mode == DecomposeMode::kBones) return follow_bones(sequence, options, unit);
   if (options.mode == DecomposeMode::kNone) {
     MotionClusters one;
     one.rest_key = options.rest_key.value_or(0);
@@ -150,6 +208,11 @@ DecomposeResult decompose(PoseSequence sequence, const DecomposeOptions& options
   ProgressPart decomposing(progress, 0, kDecomposedAt);
   decomposing.report("decompose", 0);
   const double unit = pose_unit(sequence);
+  if (options.sampling == PoseSampling::kPoseSpace) {
+    set_limits(*sequence.skeleton, options.joint_limit_degrees);
+  } else {
+    sequence.skeleton.reset();
+  }
   Decomposition decided = decide(sequence, options, unit, decomposing);
   const MotionClusters& decision = decided.clusters;
   const ClusterMembers& members = decided.members;
@@ -157,9 +220,17 @@ DecomposeResult decompose(PoseSequence sequence, const DecomposeOptions& options
   const ResidualStats residual =
       residual_stats(sequence, members, maps.local_from_world, decision.rest_key);
   decomposing.report("decompose", 0.95);
-  ModelParts parts{std::move(maps.local_from_world), {}, decision.rest_key};
-  parts.segments =
-      choose_segments(sequence, members, parts.local_from_world, {.count = options.segments});
+  ModelParts parts;
+  parts.local_from_world = std::move(maps.local_from_world);
+  parts.rest_key = decision.rest_key;
+  if (sequence.skeleton) {
+    parts.segments = {{0, sequence.key_count() - 1}};  // a pose space has no time
+    parts.pose_space_boxes = pose_space_boxes(pose_space_of(sequence), members, decided.bones);
+    parts.cluster_bones = std::move(decided.bones);
+  } else {
+    parts.segments =
+        choose_segments(sequence, members, parts.local_from_world, {.count = options.segments});
+  }
   decomposing.report("decompose", 1);
   const double decompose_seconds = watch.lap();
 
