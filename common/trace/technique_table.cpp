@@ -18,8 +18,18 @@ std::span<const TechniqueInfo> technique_table() {
        make_rebuild_bvh},
       {"refit-bvh", "Refitted BVH", "hierarchy of the rest pose, boxes refitted every frame",
        "Lo09 §4.2", make_refit_bvh},
+#ifdef MDK_HAVE_EMBREE
+      {"embree", "Embree", "a peer, in the mode that measures best", "Embree 3", make_embree,
+       TechniqueKind::kPeer},
+      {"embree-refit", "Embree, refitted", "a peer: its hierarchy refitted every frame", "Embree 3",
+       make_embree_refit, TechniqueKind::kPeer},
+      {"embree-low", "Embree, rebuilt fast", "a peer: built anew every frame, low quality",
+       "Embree 3", make_embree_low, TechniqueKind::kPeer},
+      {"embree-medium", "Embree, rebuilt", "a peer: built anew every frame, medium quality",
+       "Embree 3", make_embree_medium, TechniqueKind::kPeer},
+#endif
       {"brute-force", "Brute force", "every triangle for every tile: the oracle", "–",
-       make_brute_force},
+       make_brute_force, TechniqueKind::kOracle},
   };
   return kTable;
 }

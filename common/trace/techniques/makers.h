@@ -8,6 +8,10 @@
 namespace mdk {
 
 std::unique_ptr<Technique> make_brute_force(const Model& model);
+std::unique_ptr<Technique> make_embree(const Model& model);         ///< only with MDK_HAVE_EMBREE
+std::unique_ptr<Technique> make_embree_low(const Model& model);     ///< "
+std::unique_ptr<Technique> make_embree_medium(const Model& model);  ///< "
+std::unique_ptr<Technique> make_embree_refit(const Model& model);   ///< "
 std::unique_ptr<Technique> make_fuzzy_bvh(const Model& model);
 std::unique_ptr<Technique> make_fuzzy_kdtree(const Model& model);
 std::unique_ptr<Technique> make_rebuild_bvh(const Model& model);
