@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
+#include <numeric>
 
 #include "common/base/parallel.h"
 #include "common/base/stopwatch.h"
@@ -10,28 +11,24 @@
 namespace mdk {
 namespace {
 
-constexpr std::size_t kNobody = ~std::size_t{0};
-constexpr std::uint32_t kTilesPerSample = 16;
+constexpr std::size_t kMostTimedTiles = 16384;
 constexpr std::size_t kTilesPerOutlier = 32;
-constexpr std::size_t kMostSamples = 4096;
 constexpr int kTrialsToSettle = 2;
 constexpr std::size_t kFramesBetweenChecks = 64;
-constexpr double kHopeless = 1.6;  ///< times the best: not worth a second trial
-constexpr double kWorthChanging = 0.97;
-constexpr double kTrialShare = 0.035;    ///< of all frames' time
+constexpr double kHopeless = 1.4;  ///< times the best: not worth a second trial
+constexpr double kWorthChanging = 0.98;
+constexpr double kTrialShare = 0.03;     ///< of all frames' time
 constexpr double kFramesInAdvance = 25;  ///< trials may spend the share of so many frames to come
+constexpr double kUnknownExcess = 0.3;   ///< expected of a first trial, in frames
 constexpr std::size_t kMostViews = 32;
 
-/// "+63 %" for 1.63.
-std::string percent_behind(double ratio) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%+.0f %%", (ratio - 1) * 100);
-  return text.data();
-}
+/// One in four, the same in every frame.
+bool is_timed(const TileRays& tile) { return (tile.x + 2 * tile.y) / kTileSide % 4 == 0; }
 
-std::string milliseconds(double value) {
+template <class... Values>
+std::string formatted(const char* format, Values... values) {
   std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.1f ms", value);
+  std::snprintf(text.data(), text.size(), format, values...);
   return text.data();
 }
 
@@ -42,63 +39,40 @@ TechniqueChooser::TechniqueChooser(const Model& model,
     : model_(model),
       candidates_(candidates),
       techniques_(candidates.size()),
-      challenger_(kNobody) {}
+      tile_ms_(kMostTimedTiles) {}
 
 void TechniqueChooser::prebuild(const PosedMesh& mesh) {
-  judge_trial();
-  challenger_ = kNobody;
   if (!views_.empty()) {
     View& view = views_.back();
-    serving_ = view.incumbent;
-    challenger_ = pick_challenger(view);
-    if (challenger_ != kNobody) samples_.resize(kMostSamples);
+    const double frame_ms = measured_frame_ms();
+    if (!is_first_frame_ && frame_ms > 0) learn(view, frame_ms);
+    serving_ = next_to_serve(view);
   }
   candidate(serving_).prebuild(mesh);
-  if (challenger_ != kNobody) candidate(challenger_).prebuild(mesh);
 }
 
 void TechniqueChooser::update(const PosedMesh& mesh) {
-  Stopwatch watch;
+  const Stopwatch watch;
   candidate(serving_).update(mesh);
-  serving_update_ms_ = watch.lap() * 1e3;
-  if (challenger_ != kNobody) candidate(challenger_).update(mesh);
-  challenger_update_ms_ = watch.lap() * 1e3;
+  update_ms_ = watch.milliseconds();
 }
 
 void TechniqueChooser::set_view(const PinholeRays& rays) {
-  ++enter_view(rays).frames;
+  is_first_frame_ = views_.empty() || !is_near(views_.back().rays, rays);
+  if (is_first_frame_) enter_view(rays);
+  ++views_.back().frames;
   candidate(serving_).set_view(rays);
-  if (challenger_ != kNobody) candidate(challenger_).set_view(rays);
+  tiles_ = timed_ = 0;
 }
 
 void TechniqueChooser::trace(const TileRays& tile, TileHits& hits, TileScratch& scratch,
                              TraceCounters* counters) const {
-  const Technique& serving = made(serving_);
-  if (challenger_ == kNobody) return serving.trace(tile, hits, scratch, counters);
-  ++tiles_;
-  const std::size_t sample = is_sampled(tile) ? sampled_++ : kNobody;
-  if (sample >= samples_.size()) return serving.trace(tile, hits, scratch, counters);
-
-  TileHits discarded;
-  discarded.clear();
-  const auto serve = [&] {
-    const Stopwatch watch;
-    serving.trace(tile, hits, scratch, counters);
-    samples_[sample].serving_ms = static_cast<float>(watch.milliseconds());
-  };
-  const auto challenge = [&] {
-    const Stopwatch watch;
-    made(challenger_).trace(tile, discarded, scratch, nullptr);
-    samples_[sample].challenger_ms = static_cast<float>(watch.milliseconds());
-  };
-  // Whoever comes second finds the vertices in the cache: they take turns.
-  if (sample % 2 == 0) {
-    serve();
-    challenge();
-  } else {
-    challenge();
-    serve();
-  }
+  const Technique& serving = *techniques_[serving_];
+  tiles_.fetch_add(1, std::memory_order_relaxed);
+  const std::size_t number = is_timed(tile) ? timed_++ : kMostTimedTiles;
+  const Stopwatch watch;
+  serving.trace(tile, hits, scratch, counters);
+  if (number < kMostTimedTiles) tile_ms_[number] = static_cast<float>(watch.milliseconds());
 }
 
 std::size_t TechniqueChooser::structure_bytes() const {
@@ -112,13 +86,14 @@ std::string TechniqueChooser::note() const {
   if (views_.empty()) return {};
   const View& view = views_.back();
   std::string text(candidates_[view.incumbent].id);
-  const double best = view.cost_ms(view.incumbent);
-  if (view.first_trace_ms > 0) text.append(", ").append(milliseconds(best));
+  if (view.unit_ms > 0) text += formatted(", %.1f ms", view.cost_ms(view.incumbent));
+  const double best = view.standings[view.incumbent].relative_cost;
   const char* separator = "; ";
   for (std::size_t i = 0; i < candidates_.size(); ++i) {
-    if (i == view.incumbent || view.standings[i].trials == 0) continue;
-    text.append(separator).append(candidates_[i].id).append(" ");
-    text += percent_behind(view.cost_ms(i) / best);
+    const Standing& standing = view.standings[i];
+    if (i == view.incumbent || standing.trials == 0) continue;
+    text.append(separator).append(candidates_[i].id);
+    text += formatted(" %+.0f %%", (standing.relative_cost / best - 1) * 100);
     separator = ", ";
   }
   return text;
@@ -141,10 +116,10 @@ bool TechniqueChooser::is_near(const PinholeRays& a, const PinholeRays& b) const
 
 /// The entry of this view, now the last one; a new one begins with the choice of the last view.
 TechniqueChooser::View& TechniqueChooser::enter_view(const PinholeRays& rays) {
-  const auto known = std::find_if(views_.rbegin(), views_.rend(),
+  const auto known = std::find_if(views_.begin(), views_.end(),
                                   [&](const View& view) { return is_near(view.rays, rays); });
-  if (known != views_.rend()) {
-    std::rotate(known.base() - 1, known.base(), views_.end());
+  if (known != views_.end()) {
+    std::rotate(known, known + 1, views_.end());
     return views_.back();
   }
   View view;
@@ -156,87 +131,65 @@ TechniqueChooser::View& TechniqueChooser::enter_view(const PinholeRays& rays) {
   return views_.back();
 }
 
-void TechniqueChooser::judge_trial() {
-  const std::size_t sampled = std::min<std::size_t>(sampled_, samples_.size());
-  if (challenger_ != kNobody && sampled > 0) {
-    // Tiles that take extremely long were interrupted: left out for both alike.
-    const auto longest_first = [](const Sample& a, const Sample& b) {
-      return std::max(a.serving_ms, a.challenger_ms) > std::max(b.serving_ms, b.challenger_ms);
-    };
-    const auto end = samples_.begin() + static_cast<std::ptrdiff_t>(sampled);
-    const auto kept = samples_.begin() + static_cast<std::ptrdiff_t>(sampled / kTilesPerOutlier);
-    std::nth_element(samples_.begin(), kept, end, longest_first);
-    double serving_ms = 0, challenger_ms = 0;
-    for (auto sample = kept; sample != end; ++sample) {
-      serving_ms += static_cast<double>(sample->serving_ms);
-      challenger_ms += static_cast<double>(sample->challenger_ms);
-    }
-    const double tiles_per_kept = static_cast<double>(tiles_) / static_cast<double>(end - kept);
-    record_trial(serving_ms, challenger_ms, tiles_per_kept / thread_count());
+/// Update and trace of the last frame, from its timed tiles; 0 where there were none.
+double TechniqueChooser::measured_frame_ms() {
+  const std::size_t timed = std::min<std::size_t>(timed_, kMostTimedTiles);
+  if (timed == 0) return 0;
+  // Tiles that take extremely long were interrupted: left out, for all candidates alike.
+  const auto end = tile_ms_.begin() + static_cast<std::ptrdiff_t>(timed);
+  const auto kept = tile_ms_.begin() + static_cast<std::ptrdiff_t>(timed / kTilesPerOutlier);
+  std::nth_element(tile_ms_.begin(), kept, end, std::greater<>());
+  const double per_tile = std::accumulate(kept, end, 0.0) / static_cast<double>(end - kept);
+  return update_ms_ + per_tile * static_cast<double>(tiles_) / thread_count();
+}
+
+void TechniqueChooser::learn(View& view, double frame_ms) const {
+  Standing& served = view.standings[serving_];
+  if (serving_ == view.incumbent || view.unit_ms == 0) {
+    const double unit = frame_ms / served.relative_cost;
+    view.unit_ms = view.unit_ms == 0 ? unit : (view.unit_ms + unit) / 2;
+    return;
   }
-  tiles_ = sampled_ = 0;
+  const double relative = frame_ms / view.unit_ms;
+  served.relative_cost = served.trials == 0 ? relative : (served.relative_cost + relative) / 2;
+  ++served.trials;
+  view.spent_ms += std::max(0.0, frame_ms - view.cost_ms(view.incumbent));
+  const Standing& incumbent = view.standings[view.incumbent];
+  if (served.relative_cost < kWorthChanging * incumbent.relative_cost) {
+    view.standings[view.incumbent].trials = std::max(1, incumbent.trials);
+    view.incumbent = serving_;
+  }
 }
 
-/// `frame_per_sum`: times the sums over the sampled tiles give the whole frame's time.
-void TechniqueChooser::record_trial(double serving_ms, double challenger_ms, double frame_per_sum) {
-  View& view = views_.back();
-  Standing& serving = view.standings[serving_];
-  Standing& challenger = view.standings[challenger_];
-  const auto shortest = [](const Standing& standing, double ms, bool known) {
-    return known ? std::min(standing.update_ms, ms) : ms;
-  };
-  serving.update_ms = shortest(serving, serving_update_ms_, view.first_trace_ms > 0);
-  challenger.update_ms = shortest(challenger, challenger_update_ms_, challenger.trials > 0);
-  const double relative = challenger_ms / serving_ms * serving.relative_trace;
-  challenger.relative_trace =
-      challenger.trials == 0 ? relative : (challenger.relative_trace + relative) / 2;
-  ++challenger.trials;
-  view.first_trace_ms = serving_ms * frame_per_sum / serving.relative_trace;
-  challenger.trial_ms = challenger_update_ms_ + challenger_ms / thread_count();
-  view.spent_ms += challenger.trial_ms;
-  choose(view);
-}
-
-void TechniqueChooser::choose(View& view) const {
-  std::size_t best = view.incumbent;
-  for (std::size_t i = 0; i < candidates_.size(); ++i)
-    if (view.standings[i].trials > 0 && view.cost_ms(i) < view.cost_ms(best)) best = i;
-  if (view.cost_ms(best) < kWorthChanging * view.cost_ms(view.incumbent)) view.incumbent = best;
-}
-
-/// Who is tried in the next frame: those whose trials are not complete, in turn; later, at long
-/// intervals, each again.
-std::size_t TechniqueChooser::pick_challenger(View& view) const {
-  const double best = view.cost_ms(view.incumbent);
+/// The incumbent, or a challenger: those whose trials are not complete, in turn; later, at long
+/// intervals, each again. Between two trials the incumbent serves, to be measured beside them.
+std::size_t TechniqueChooser::next_to_serve(View& view) const {
+  const bool was_trial = serving_ != view.incumbent;
+  if (was_trial || view.unit_ms == 0) return view.incumbent;
   const auto is_settled = [&](std::size_t i) {
     const Standing& standing = view.standings[i];
-    return i == view.incumbent || standing.trials >= kTrialsToSettle ||
-           (standing.trials > 0 && view.cost_ms(i) > kHopeless * best);
+    return standing.trials >= kTrialsToSettle ||
+           (standing.trials > 0 && view.cost_ms(i) > kHopeless * view.cost_ms(view.incumbent));
   };
   const bool check = view.frames >= view.next_check;
   for (std::size_t step = 1; step <= candidates_.size(); ++step) {
     const std::size_t i = (view.last_challenger + step) % candidates_.size();
-    const bool is_due = !is_settled(i) || (check && i != view.incumbent);
-    if (!is_due || !can_afford(view, i)) continue;
-    if (is_settled(i)) view.next_check = view.frames + kFramesBetweenChecks;
+    const bool settled = is_settled(i);
+    if (i == view.incumbent || (settled && !check) || !can_afford(view, i)) continue;
+    if (settled) view.next_check = view.frames + kFramesBetweenChecks;
     view.last_challenger = i;
     return i;
   }
-  return kNobody;
+  return view.incumbent;
 }
 
 bool TechniqueChooser::can_afford(const View& view, std::size_t challenger) const {
   const double frame_ms = view.cost_ms(view.incumbent);
-  if (view.first_trace_ms == 0) return true;  // the first trial tells what a frame costs
-  const Standing& standing = view.standings[challenger];
-  const double expected = standing.trials > 0 ? standing.trial_ms : 0.1 * frame_ms;
+  const double excess = view.standings[challenger].trials > 0
+                            ? std::max(0.0, view.cost_ms(challenger) - frame_ms)
+                            : kUnknownExcess * frame_ms;
   const double frames = kFramesInAdvance + static_cast<double>(view.frames);
-  return view.spent_ms + expected <= kTrialShare * frames * frame_ms;
-}
-
-bool TechniqueChooser::is_sampled(const TileRays& tile) const {
-  const std::size_t column = tile.x / kTileSide, row = tile.y / kTileSide;
-  return (column + 5 * row + 7 * views_.back().frames) % kTilesPerSample == 0;
+  return view.spent_ms + excess <= kTrialShare * frames * frame_ms;
 }
 
 }  // namespace mdk
