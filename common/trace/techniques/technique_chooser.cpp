@@ -126,6 +126,7 @@ TechniqueChooser::View& TechniqueChooser::enter_view(const PinholeRays& rays) {
   view.rays = rays;
   view.standings.resize(candidates_.size());
   view.incumbent = view.last_challenger = serving_;
+  view.next_check = kFramesBetweenChecks;
   if (views_.size() == kMostViews) views_.erase(views_.begin());
   views_.push_back(std::move(view));
   return views_.back();

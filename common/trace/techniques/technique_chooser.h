@@ -54,7 +54,7 @@ class TechniqueChooser final : public Technique {
     std::size_t incumbent = 0;
     double unit_ms = 0;  ///< what a relative cost of 1 is at present
     std::size_t frames = 0;
-    std::size_t next_check = 64;  ///< frame from which a settled choice is questioned
+    std::size_t next_check = 0;  ///< frame from which a settled choice is questioned
     std::size_t last_challenger = 0;
     double spent_ms = 0;  ///< on trials, beyond what the incumbent would have cost
 
