@@ -25,12 +25,6 @@ std::vector<std::uint32_t> background_rows(std::uint32_t height) {
   return rows;
 }
 
-bool is_empty(const TileHits& hits) {
-  std::uint32_t all = kNoHit;
-  for (const std::uint32_t triangle : hits.triangle) all &= triangle;
-  return all == kNoHit;
-}
-
 }  // namespace
 
 std::span<const ShadingInfo> shading_table() {
@@ -196,7 +190,7 @@ void Shader::shade(const PosedMesh& mesh, const PinholeRays& rays, const HitBuff
   });
   std::vector<std::uint32_t> tiles;
   for (std::size_t i = 0; i < hits.tile_count(); ++i)
-    if (!is_empty(hits.tile(i))) tiles.push_back(static_cast<std::uint32_t>(i));
+    if (hits.tile(i).written) tiles.push_back(static_cast<std::uint32_t>(i));
 
   vertex_normals_.update(mesh, hits, tiles);
   const ShadedMesh shaded = shaded_mesh(mesh, mode);

@@ -66,7 +66,7 @@ class TechniqueChooserTest : public testing::Test {
       std::uint32_t shown = kNoHit;
       for (std::uint32_t tile = 0; tile < 256; ++tile) {
         hits.clear();
-        const TileRays tile_rays{&rays, nullptr, nullptr, tile % 16 * 16, tile / 16 * 16};
+        const TileRays tile_rays{&rays, nullptr, tile % 16 * 16, tile / 16 * 16};
         chooser.trace(tile_rays, hits, scratch_, &counters_);
         if (tile > 0) {
           EXPECT_EQ(hits.triangle[0], shown) << "one frame, two techniques";

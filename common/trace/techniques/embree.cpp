@@ -96,6 +96,7 @@ void trace_packets(RTCScene scene, const TileRays& tile, TileHits& hits) {
         const std::uint32_t pixel = (top + i / P::kWidth) * kTileSide + left + i % P::kWidth;
         hits.t[pixel] = packet.ray.tfar[i];
         hits.triangle[pixel] = packet.hit.primID[i];
+        hits.written = true;
       }
     }
 }
