@@ -8,6 +8,7 @@
 #include "common/base/parallel.h"
 #include "common/math/affine_path.h"
 #include "common/trace/cluster_trees.h"
+#include "common/trace/key_poses.h"
 
 namespace mdk {
 namespace {
@@ -18,9 +19,8 @@ bool is_finite(const Vec3f& v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
-VertexSource vertices_at(const Model& model, const KeyInterval& at) {
-  return {model.key_pose(at.key0).data(), model.key_pose(at.key1).data(),
-          at.key0 == at.key1 ? 0.0f : at.s};
+VertexSource vertices_at(const KeyPoses& poses, const KeyInterval& at) {
+  return {poses.at(at.key0), poses.at(at.key1), at.key0 == at.key1 ? 0.0f : at.s};
 }
 
 /// The largest component of a direction brought near 1 by a power of two, which rounds nothing;
@@ -79,7 +79,7 @@ class QueryMoment {
 };
 
 struct RayQuery::State {
-  explicit State(const Model& m) : model(m) {
+  explicit State(const Model& m) : model(m), poses(m) {
     for (std::uint32_t s = 0; s < m.segment_count(); ++s)
       segments.push_back(build_cluster_trees(m, s));
   }
@@ -118,7 +118,7 @@ struct RayQuery::State {
     RayHit hit = scaled.nothing_yet(t_max);
     const std::span<const Affine3f> from = model.key_maps(at.key0), to = model.key_maps(at.key1);
     trace(
-        scaled, segments[segment_of(model, at)], vertices_at(model, at), aim, hit,
+        scaled, segments[segment_of(model, at)], vertices_at(poses, at), aim, hit,
         [&](std::uint32_t c) { return cluster_world_box(model, c, at); },
         [&](std::uint32_t c) { return interpolate(from[c], to[c], at.s); });
     return hit;
@@ -147,6 +147,7 @@ struct RayQuery::State {
   }
 
   const Model& model;
+  KeyPoses poses;
   std::vector<ClusterTrees> segments;
 };
 
@@ -170,7 +171,7 @@ std::shared_ptr<const QueryMoment> RayQuery::prepare(const KeyInterval& at) cons
   const Model& model = state_->model;
   auto moment = std::make_shared<QueryMoment>();
   moment->at = at;
-  moment->vertices = vertices_at(model, at);
+  moment->vertices = vertices_at(state_->poses, at);
   moment->trees = &state_->segments[segment_of(model, at)];
   const std::span<const Affine3f> from = model.key_maps(at.key0), to = model.key_maps(at.key1);
   for (std::uint32_t c = 0; c < model.cluster_count(); ++c) {
@@ -197,7 +198,7 @@ void RayQuery::any_hits(std::span<const QueryRay> rays, std::span<const KeyInter
 }
 
 std::size_t RayQuery::structure_bytes() const {
-  std::size_t bytes = 0;
+  std::size_t bytes = state_->poses.bytes();
   for (const ClusterTrees& segment : state_->segments) bytes += segment.bytes();
   return bytes;
 }
@@ -206,12 +207,15 @@ QueryHit brute_force_closest_hit(const Model& model, const QueryRay& ray, const 
   const ScaledRay scaled(ray);
   if (!scaled.usable) return {};
   RayHit hit = scaled.nothing_yet(ray.t_max);
+  PosedMesh mesh(model);
+  mesh.set_time(at);
+  const VertexSource vertices{mesh.positions().data(), mesh.positions().data(), 0};
   TriangleBlock block;
   for (std::uint32_t t = 0; t < model.triangle_count(); ++t) {
     block.push(t, model.triangles[t]);
     if (block.count < kBlockTriangles && t + 1 < model.triangle_count()) continue;
     block.pad();
-    intersect_blocks(scaled.ray, {&block, 1}, vertices_at(model, at), hit);
+    intersect_blocks(scaled.ray, {&block, 1}, vertices, hit);
     block = {};
   }
   return scaled.in_callers_lengths(hit);

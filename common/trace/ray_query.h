@@ -27,8 +27,8 @@ struct QueryRay {
 /// coordinates bary1 and bary2.
 using QueryHit = RayHit;
 
-/// The model at one moment: clusters' maps and boxes, ready for rays. Vertices are not posed: a ray
-/// computes those it needs.
+/// The model at one moment: clusters' maps and boxes, ready for rays. Vertices between keys are not
+/// posed: a ray interpolates those it needs.
 class QueryMoment;
 
 /// The model must outlive it. All members but the constructor may be called from many threads at
@@ -36,6 +36,8 @@ class QueryMoment;
 class RayQuery {
  public:
   /// Builds one hierarchy per cluster and segment. Cost: O(segments * T log T). Runs in parallel.
+  /// Key poses that are not stored as positions are decoded when a ray first asks for them, and
+  /// kept: 12 bytes a vertex for every such key.
   explicit RayQuery(const Model& model);
   ~RayQuery();
   RayQuery(const RayQuery&) = delete;

@@ -22,6 +22,13 @@ DecomposeResult bake(PoseSequence sequence) {
   return decompose(std::move(sequence), {}, silent);
 }
 
+/// All vertices at a moment.
+std::vector<Vec3f> vertices_at(const Model& model, const KeyInterval& at) {
+  PosedMesh mesh(model);
+  mesh.set_time(at);
+  return {mesh.positions().begin(), mesh.positions().end()};
+}
+
 bool is_same(const QueryHit& a, const QueryHit& b) {
   const auto bits = [](float f) { return std::bit_cast<std::uint32_t>(f); };
   return a.triangle == b.triangle && bits(a.t) == bits(b.t) && bits(a.bary1) == bits(b.bary1) &&
@@ -56,10 +63,8 @@ class RayMaker {
   /// A vertex, a point on an edge, or anywhere.
   Vec3f target(const KeyInterval& at) {
     const Triangle& t = model_.triangles[random_() % model_.triangle_count()];
-    const auto vertex = [&](int k) {
-      const Vec3f a = model_.key_pose(at.key0)[t.v[k]], b = model_.key_pose(at.key1)[t.v[k]];
-      return a + (b - a) * at.s;
-    };
+    const std::vector<Vec3f> vertices = vertices_at(model_, at);
+    const auto vertex = [&](int k) { return vertices[t.v[k]]; };
     const Vec3f a = vertex(0), b = vertex(1), c = vertex(2);
     switch (random_() % 3) {
       case 0:
@@ -108,13 +113,12 @@ TEST(RayQuery, GivesBruteForcesHitAtEveryRaysOwnTime) {
 /// The formula of the kernel's head comment, written plainly: one triangle at a time.
 QueryHit plain_closest_hit(const Model& model, const QueryRay& ray, const KeyInterval& at) {
   const Vec3d o = to_double(ray.origin), d = to_double(ray.direction);
+  const std::vector<Vec3f> vertices = vertices_at(model, at);
   QueryHit best;
   for (std::uint32_t t = 0; t < model.triangle_count(); ++t) {
     Vec3d v[3];
     for (int k = 0; k < 3; ++k) {
-      const std::uint32_t i = model.triangles[t].v[k];
-      const Vec3f from = model.key_pose(at.key0)[i], to = model.key_pose(at.key1)[i];
-      v[k] = to_double(at.s == 0 ? from : from + (to - from) * at.s) - o;
+      v[k] = to_double(vertices[model.triangles[t].v[k]]) - o;
     }
     double w[3];
     for (int k = 0; k < 3; ++k) {
@@ -155,7 +159,7 @@ TEST(RayQuery, RangesOfTAreOpenBelowAndClosedAbove) {
   const Model model = baked.model.view();
   const RayQuery query(model);
   const KeyInterval at = at_key(1);
-  const Vec3f on_mesh = model.key_pose(1)[model.triangles[40].v[0]];
+  const Vec3f on_mesh = vertices_at(model, at)[model.triangles[40].v[0]];
   QueryRay ray{.origin = on_mesh + Vec3f{0.3f, 1, 10}, .direction = Vec3f{0.3f, 1, 10} * -0.3f};
   const QueryHit first = query.closest_hit(ray, at);
   ASSERT_NE(first.triangle, kNoHit);
@@ -211,6 +215,7 @@ TEST(RayQuery, RaysWithoutDirectionOrSenseHitNothing) {
 /// counted with Möller and Trumbore's test in double.
 bool is_inside(const Model& model, const Vec3f& point, const KeyInterval& at) {
   const Vec3d o = to_double(point);
+  const std::vector<Vec3f> vertices = vertices_at(model, at);
   int votes = 0;
   for (const Vec3d& d :
        {Vec3d{0.31, 0.83, 0.46}, Vec3d{-0.72, 0.11, 0.68}, Vec3d{0.2, -0.5, -0.9}}) {
@@ -218,8 +223,7 @@ bool is_inside(const Model& model, const Vec3f& point, const KeyInterval& at) {
     for (const Triangle& t : model.triangles) {
       Vec3d v[3];
       for (int k = 0; k < 3; ++k) {
-        const Vec3f a = model.key_pose(at.key0)[t.v[k]], b = model.key_pose(at.key1)[t.v[k]];
-        v[k] = to_double(a + (b - a) * at.s);
+        v[k] = to_double(vertices[t.v[k]]);
       }
       const Vec3d e1 = v[1] - v[0], e2 = v[2] - v[0], p = cross(d, e2), s = o - v[0];
       const double det = dot(e1, p), u = dot(s, p) / det, w = dot(d, cross(s, e1)) / det;
@@ -239,16 +243,15 @@ TEST(RayQuery, NoRayLeavesAClosedMeshInMotion) {
   constexpr std::size_t kRays = 100'000;
   constexpr float kInward = -1;  // the corners run counter-clockwise seen from outside
   std::mt19937 random(20);
+  PosedMesh mesh(model);
   std::vector<QueryRay> rays(kRays);
   std::vector<KeyInterval> times(kRays);
   for (std::size_t i = 0; i < kRays; ++i) {
     const KeyInterval at = times[i] = locate_time(
         model, 0,
         std::uniform_real_distribution<double>(0, model.clip_seconds(model.clips[0]))(random));
-    const auto vertex = [&](std::uint32_t v) {
-      const Vec3f a = model.key_pose(at.key0)[v], b = model.key_pose(at.key1)[v];
-      return a + (b - a) * at.s;
-    };
+    mesh.set_time(at);
+    const auto vertex = [&](std::uint32_t v) { return mesh.positions()[v]; };
     const Triangle& t = model.triangles[random() % model.triangle_count()];
     const Vec3f a = vertex(t.v[0]), b = vertex(t.v[1]), c = vertex(t.v[2]);
     const Vec3f normal = normalized(cross(b - a, c - a));
