@@ -120,13 +120,20 @@ QueryHit plain_closest_hit(const Model& model, const QueryRay& ray, const KeyInt
     for (int k = 0; k < 3; ++k) {
       v[k] = to_double(vertices[model.triangles[t].v[k]]) - o;
     }
-    double w[3];
+    double w[3], error[3];
+    const auto size = [](const Vec3d& x) { return std::abs(x.x) + std::abs(x.y) + std::abs(x.z); };
+    const double largest = std::max({std::abs(d.x), std::abs(d.y), std::abs(d.z)});
     for (int k = 0; k < 3; ++k) {
       const Vec3d &a = v[(k + 1) % 3], &b = v[(k + 2) % 3];
       w[k] = dot(cross(b - a, b + a), d);
+      error[k] = size(b - a) * size(b + a) * (0x1p-48 * largest);
     }
-    const bool inside =
-        (w[0] >= 0 && w[1] >= 0 && w[2] >= 0) || (w[0] <= 0 && w[1] <= 0 && w[2] <= 0);
+    const double side = std::copysign(1.0, w[0] + w[1] + w[2]);
+    bool inside = true;
+    for (int k = 0; k < 3; ++k) {
+      inside = inside && w[k] * side >= -error[k];
+      w[k] = std::max(w[k] * side, 0.0);
+    }
     const double total = w[0] + w[1] + w[2];
     if (!inside || total == 0) continue;
     const Vec3d p = (v[0] * w[0] + v[1] * w[1] + v[2] * w[2]) * (1 / total);

@@ -2,8 +2,10 @@
 // weight of c at the direction d is ((b - a) x (b + a)) . d, exactly negated when a and b change
 // places: two triangles that share an edge agree on which side the ray passes.
 //
-//     hit where the three weights have one sign (zero counts as both);
-//     p = (w_a a + w_b b + w_c c) / (w_a + w_b + w_c)      on the triangle, whatever is rounded
+//     hit where the three weights have one sign, each give or take its rounding: also a ray that
+//     meets a vertex exactly, where all signs are rounding, hits one of the triangles around it
+//     p = (w_a a + w_b b + w_c c) / (w_a + w_b + w_c)      weights of the wrong sign count as 0, so
+//                                                          p is on the triangle in any case
 //     t = p.d / d.d                                        and p must lie close to the ray
 //
 // The last clause does nothing for triangles of sane shape. For slivers, whose weights are all
@@ -43,14 +45,27 @@ HWY_INLINE Points scale(const Points& a, DoubleVec s) {
 HWY_INLINE DoubleVec dot_product(const Points& a, const Points& b) {
   return hn::Add(hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)), hn::Mul(a.z, b.z));
 }
-/// ((b - a) x (b + a)) . d
-HWY_INLINE DoubleVec edge_weight(const Points& a, const Points& b, const Points& d) {
+HWY_INLINE DoubleVec sum_of_sizes(const Points& a) {
+  return hn::Add(hn::Add(hn::Abs(a.x), hn::Abs(a.y)), hn::Abs(a.z));
+}
+
+struct Weight {
+  DoubleVec value;
+  DoubleVec error;  ///< no less than what rounding may have done to the value
+};
+
+/// ((b - a) x (b + a)) . d; `rounding` is kRounding times the largest component of d.
+HWY_INLINE Weight edge_weight(const Points& a, const Points& b, const Points& d,
+                              DoubleVec rounding) {
   const Points u = subtract(b, a), v = add(b, a);
   const Points n{hn::Sub(hn::Mul(u.y, v.z), hn::Mul(u.z, v.y)),
                  hn::Sub(hn::Mul(u.z, v.x), hn::Mul(u.x, v.z)),
                  hn::Sub(hn::Mul(u.x, v.y), hn::Mul(u.y, v.x))};
-  return dot_product(n, d);
+  return {dot_product(n, d), hn::Mul(hn::Mul(sum_of_sizes(u), sum_of_sizes(v)), rounding)};
 }
+
+/// About twenty roundings of 2^-53 each, relative to the sizes of all factors.
+constexpr double kRounding = 0x1p-48;
 
 class RayWalk {
  public:
@@ -58,7 +73,9 @@ class RayWalk {
       : ray_(ray),
         vertices_(vertices),
         hit_(hit),
-        direction_square_(dot(ray.direction, ray.direction)) {}
+        direction_square_(dot(ray.direction, ray.direction)),
+        rounding_(kRounding * std::max({std::abs(ray.direction.x), std::abs(ray.direction.y),
+                                        std::abs(ray.direction.z)})) {}
 
   void walk(std::span<const WideBvhNode> nodes, const TriangleBlock* blocks, const BoxRay& local,
             RayAim aim) {
@@ -142,22 +159,29 @@ class RayWalk {
                  c = corner(block.corner[2] + first);
     const Points direction{hn::Set(d, ray_.direction.x), hn::Set(d, ray_.direction.y),
                            hn::Set(d, ray_.direction.z)};
-    const auto wa = edge_weight(b, c, direction), wb = edge_weight(c, a, direction),
-               wc = edge_weight(a, b, direction);
+    const auto rounding = hn::Set(d, rounding_);
+    const Weight wa = edge_weight(b, c, direction, rounding),
+                 wb = edge_weight(c, a, direction, rounding),
+                 wc = edge_weight(a, b, direction, rounding);
     const auto zero = hn::Zero(d);
-    const auto inside = hn::Or(hn::Ge(hn::Min(hn::Min(wa, wb), wc), zero),
-                               hn::Le(hn::Max(hn::Max(wa, wb), wc), zero));
+    const auto side = hn::CopySign(hn::Set(d, 1.0), hn::Add(hn::Add(wa.value, wb.value), wc.value));
+    const auto is_inner = [&](const Weight& w) {
+      return hn::Ge(hn::Mul(w.value, side), hn::Neg(w.error));
+    };
+    const auto inside = hn::And(hn::And(is_inner(wa), is_inner(wb)), is_inner(wc));
     if (hn::AllFalse(d, inside)) return;
 
-    const auto total = hn::Add(hn::Add(wa, wb), wc);
+    const auto share_of = [&](const Weight& w) { return hn::Max(hn::Mul(w.value, side), zero); };
+    const auto sa = share_of(wa), sb = share_of(wb), sc = share_of(wc);
+    const auto total = hn::Add(hn::Add(sa, sb), sc);
     const auto share = hn::Div(hn::Set(d, 1.0), total);
-    const Points p = scale(add(add(scale(a, wa), scale(b, wb)), scale(c, wc)), share);
+    const Points p = scale(add(add(scale(a, sa), scale(b, sb)), scale(c, sc)), share);
     const auto t = hn::Div(dot_product(p, direction), hn::Set(d, direction_square_));
     const Points off = subtract(p, scale(direction, t));
     const auto close =
         hn::Le(dot_product(off, off), hn::Mul(dot_product(p, p), hn::Set(d, 0x1p-40)));
     // Written so that a corner that is not a number fails it.
-    const auto hit = hn::And(inside, hn::And(close, hn::Gt(hn::Abs(total), zero)));
+    const auto hit = hn::And(inside, hn::And(close, hn::Gt(total, zero)));
     alignas(8) std::uint8_t bits[8] = {};
     hn::StoreMaskBits(d, hit, bits);
     std::uint32_t met = bits[0];
@@ -166,8 +190,8 @@ class RayWalk {
 
     alignas(64) double depth[kBvhWidth], bary1[kBvhWidth], bary2[kBvhWidth];
     hn::Store(t, d, depth);
-    hn::Store(hn::Mul(wb, share), d, bary1);
-    hn::Store(hn::Mul(wc, share), d, bary2);
+    hn::Store(hn::Mul(sb, share), d, bary1);
+    hn::Store(hn::Mul(sc, share), d, bary2);
     for (; met != 0; met &= met - 1) {
       const auto i = static_cast<std::size_t>(__builtin_ctz(met));
       const auto at = static_cast<float>(depth[i]);
@@ -181,7 +205,7 @@ class RayWalk {
   const WorldRay& ray_;
   const VertexSource& vertices_;
   RayHit& hit_;
-  double direction_square_;
+  double direction_square_, rounding_;
   Entry stack_[kStackSize];
 };
 
