@@ -49,7 +49,7 @@ class TechniqueChooserTest : public testing::Test {
   TechniqueChooserTest() {
     storage_.vertex_count = 1;
     storage_.key_times = {0};
-    storage_.key_positions = {{0, 0, 0}};
+    storage_.poses.key_positions = {{0, 0, 0}};
     storage_.bounds = {{-1, -1, -1}, {1, 1, 1}};
     dear_updates = 0;
   }

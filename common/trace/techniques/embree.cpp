@@ -144,7 +144,6 @@ class EmbreeTechnique final : public Technique {
     rtcSetSharedGeometryBuffer(geometry_, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
                                model_.triangles.data(), 0, sizeof(Triangle),
                                model_.triangles.size());
-    set_vertices(model_.key_pose(model_.rest_key));
     const RTCBuildQuality quality = mode_ == EmbreeMode::kRefit ? RTC_BUILD_QUALITY_REFIT
                                     : mode_ == EmbreeMode::kLow ? RTC_BUILD_QUALITY_LOW
                                                                 : RTC_BUILD_QUALITY_MEDIUM;
@@ -164,8 +163,9 @@ class EmbreeTechnique final : public Technique {
   /// last one, and copied otherwise.
   void set_vertices(std::span<const Vec3f> positions) {
     const Vec3f* vertices = positions.data();
-    const Vec3f* end = model_.key_positions.data() + model_.key_positions.size();
-    const bool in_model = vertices >= model_.key_positions.data() && vertices < end;
+    const std::span<const Vec3f> stored = model_.poses.key_positions;
+    const Vec3f* end = stored.data() + stored.size();
+    const bool in_model = vertices >= stored.data() && vertices < end;
     if (!in_model || vertices + positions.size() == end) {
       padded_.resize(positions.size() + 1);
       std::copy(positions.begin(), positions.end(), padded_.begin());
