@@ -80,7 +80,7 @@ void draw_techniques(const Theme& theme, ViewState& state, UiResult& result) {
 
 void draw_shading(const Theme& theme, ViewState& state, UiResult& result) {
   heading(theme, "SHADING");
-  std::vector<Segment> segments;
+  std::vector<ButtonSegment> segments;
   std::size_t chosen = 0;
   for (const ShadingInfo& info : shading_table()) {
     if (info.mode == state.settings.shading) chosen = segments.size();
@@ -161,10 +161,10 @@ void draw_history(const Theme& theme, const ViewState& state, UiResult& result) 
 
 void draw_view(const Theme& theme, ViewState& state, UiResult& result) {
   heading(theme, "VIEW");
-  const std::vector<Segment> resolutions = {{"resolution:full", "1"},
-                                            {"resolution:half", "1/2"},
-                                            {"resolution:quarter", "1/4"},
-                                            {"resolution:auto", "Auto"}};
+  const std::vector<ButtonSegment> resolutions = {{"resolution:full", "1"},
+                                                  {"resolution:half", "1/2"},
+                                                  {"resolution:quarter", "1/4"},
+                                                  {"resolution:auto", "Auto"}};
   const auto chosen = static_cast<std::size_t>(state.settings.resolution);
   if (const auto picked = segmented_buttons(resolutions, chosen, result.widgets))
     state.settings.resolution = static_cast<Resolution>(*picked);

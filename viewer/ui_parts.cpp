@@ -31,7 +31,7 @@ void fact(const char* name, const std::string& value) {
   ImGui::TextUnformatted(value.c_str());
 }
 
-std::optional<std::size_t> segmented_buttons(const std::vector<Segment>& segments,
+std::optional<std::size_t> segmented_buttons(const std::vector<ButtonSegment>& segments,
                                              std::size_t chosen, WidgetMap& widgets) {
   if (segments.empty()) return {};
   constexpr float kGap = 2;

@@ -21,13 +21,13 @@ void heading(const Theme& theme, const char* title);
 /// One line: a dim name at the left, its value at the right.
 void fact(const char* name, const std::string& value);
 
-struct Segment {
+struct ButtonSegment {
   std::string id;  ///< as recorded
   std::string label;
 };
 
 /// Buttons side by side over the whole width, one of them chosen; the one that was clicked now.
-std::optional<std::size_t> segmented_buttons(const std::vector<Segment>& segments,
+std::optional<std::size_t> segmented_buttons(const std::vector<ButtonSegment>& segments,
                                              std::size_t chosen, WidgetMap& widgets);
 
 enum class Icon { kPlay, kPause, kPreviousKey, kNextKey, kStart, kEnd };

@@ -167,4 +167,18 @@ void refit_wide_bvh(WideBvh& bvh, std::span<const Aabb> boxes) {
   }
 }
 
+double sah_cost(const WideBvh& bvh) {
+  if (bvh.nodes.empty()) return 0;
+  const auto half_area = [](const Aabb& box) {
+    const Vec3d e = to_double(box.hi) - to_double(box.lo);
+    return e.x * e.y + e.y * e.z + e.z * e.x;
+  };
+  const double root = half_area(bvh.nodes[0].box());
+  double sum = 1;
+  for (const WideBvhNode& node : bvh.nodes)
+    for (std::uint32_t c = 0; c < node.count; ++c)
+      sum += root > 0 ? half_area(node.box(c)) / root : 1;
+  return sum;
+}
+
 }  // namespace mdk

@@ -92,4 +92,8 @@ WideBvh build_wide_bvh(std::span<const Aabb> boxes, int bins);
 /// New boxes for the same items, bottom up. `boxes` has one per item. Cost: O(N); runs in parallel.
 void refit_wide_bvh(WideBvh& bvh, std::span<const Aabb> boxes);
 
+/// Expected boxes and leaves met by a ray that meets the root's box (SAH). A root without area
+/// counts as met whole. Cost: O(nodes).
+double sah_cost(const WideBvh& bvh);
+
 }  // namespace mdk

@@ -23,8 +23,10 @@ inline float linear_from_srgb(std::uint32_t byte) {
   return table[byte & 255u];
 }
 
-/// Linear light as an sRGB byte; clamped to [0, 1].
-inline std::uint32_t srgb_from_linear(float linear) {
+inline constexpr float kLastSrgbStep = 4095;
+
+/// sRGB bytes for linear light in steps from 0 to kLastSrgbStep.
+inline const std::array<std::uint8_t, 4096>& srgb_table() {
   static const std::array<std::uint8_t, 4096> table = [] {
     std::array<std::uint8_t, 4096> t{};
     for (std::size_t i = 0; i < t.size(); ++i) {
@@ -34,8 +36,19 @@ inline std::uint32_t srgb_from_linear(float linear) {
     }
     return t;
   }();
-  const float clamped = linear > 0 ? std::min(linear, 1.0f) : 0.0f;  // not a number: black
-  return table[static_cast<std::size_t>(clamped * 4095 + 0.5f)];
+  return table;
+}
+
+/// The step of srgb_table() for linear light; clamped to [0, 1], and black where it is not a
+/// number.
+inline std::int32_t srgb_step(float linear) {
+  const float clamped = linear > 0 ? std::min(linear, 1.0f) : 0.0f;
+  return static_cast<std::int32_t>(clamped * kLastSrgbStep + 0.5f);
+}
+
+/// Linear light as an sRGB byte.
+inline std::uint32_t srgb_from_linear(float linear) {
+  return srgb_table()[static_cast<std::size_t>(srgb_step(linear))];
 }
 
 /// Opaque sRGB RGBA with red lowest.

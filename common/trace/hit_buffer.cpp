@@ -2,16 +2,29 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 
 namespace mdk {
+namespace {
 
-std::uint64_t count_mismatches(const HitBuffer& a, const HitBuffer& b) {
+bool is_same_hit(std::uint32_t triangle_a, float t_a, std::uint32_t triangle_b, float t_b,
+                 Agreement agreement) {
+  if (agreement == Agreement::kBitIdentical)
+    return triangle_a == triangle_b &&
+           std::bit_cast<std::uint32_t>(t_a) == std::bit_cast<std::uint32_t>(t_b);
+  if (triangle_a == triangle_b) return true;
+  const bool both_hit = triangle_a != kNoHit && triangle_b != kNoHit;
+  return both_hit && std::abs(t_a - t_b) <= 1e-5f * std::max(t_a, t_b);
+}
+
+}  // namespace
+
+std::uint64_t count_mismatches(const HitBuffer& a, const HitBuffer& b, Agreement agreement) {
   std::uint64_t mismatches = 0;
   for (std::uint32_t y = 0; y < a.height(); ++y)
     for (std::uint32_t x = 0; x < a.width(); ++x)
       mismatches +=
-          a.triangle(x, y) != b.triangle(x, y) ||
-          std::bit_cast<std::uint32_t>(a.t(x, y)) != std::bit_cast<std::uint32_t>(b.t(x, y));
+          !is_same_hit(a.triangle(x, y), a.t(x, y), b.triangle(x, y), b.t(x, y), agreement);
   return mismatches;
 }
 

@@ -66,9 +66,15 @@ class HitBuffer {
   std::vector<TileHits> tiles_;
 };
 
-/// Pixels whose hit differs: another triangle, or a t that is not the same to the bit. Both images
-/// have the same size.
-std::uint64_t count_mismatches(const HitBuffer& a, const HitBuffer& b);
+/// When two hits count as the same.
+enum class Agreement {
+  kBitIdentical,  ///< same triangle, and t to the bit
+  kSameDepth,     ///< same triangle, or t to 1e-5 relative: for another program's triangle test
+};
+
+/// Pixels whose hits are not the same. Both images have the same size.
+std::uint64_t count_mismatches(const HitBuffer& a, const HitBuffer& b,
+                               Agreement agreement = Agreement::kBitIdentical);
 
 /// Pixels that hit something.
 std::uint64_t count_hits(const HitBuffer& hits);

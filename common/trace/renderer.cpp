@@ -113,5 +113,6 @@ std::span<const std::uint32_t> Renderer::pixels() const { return state_->pixels;
 const HitBuffer& Renderer::hits() const { return state_->hits; }
 const FrameStats& Renderer::stats() const { return state_->stats; }
 std::size_t Renderer::structure_bytes() const { return state_->technique->structure_bytes(); }
+std::string Renderer::technique_note() const { return state_->technique->note(); }
 
 }  // namespace mdk

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -52,6 +53,8 @@ class Renderer {
   const HitBuffer& hits() const;
   const FrameStats& stats() const;
   std::size_t structure_bytes() const;
+  /// Technique::note() of the present technique.
+  std::string technique_note() const;
 
  private:
   struct State;

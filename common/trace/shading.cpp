@@ -15,34 +15,6 @@ constexpr Vec3f kBackgroundTop{0.060f, 0.068f, 0.082f};
 constexpr Vec3f kBackgroundBottom{0.016f, 0.018f, 0.022f};
 constexpr float kAmbient = 0.12f;
 
-/// Barycentric coordinates of the ray's meeting with the triangle's plane, clamped into it.
-void barycentrics(const Vec3f (&corner)[3], const PinholeRays& rays, const Vec3f& direction,
-                  float (&bary)[3]) {
-  const Vec3f edge1 = corner[1] - corner[0], edge2 = corner[2] - corner[0];
-  const Vec3f p = cross(direction, edge2);
-  const float det = dot(edge1, p);
-  const Vec3f from_a = rays.origin - corner[0];
-  const float inv = det != 0 ? 1 / det : 0;
-  const auto unit = [](float x) { return x > 0 ? std::min(x, 1.0f) : 0.0f; };
-  const float u = unit(dot(from_a, p) * inv);
-  const float v = unit(dot(direction, cross(from_a, edge1)) * inv);
-  bary[1] = u;
-  bary[2] = std::min(v, 1 - u);
-  bary[0] = 1 - bary[1] - bary[2];
-}
-
-template <class T>
-T blend(const T& a, const T& b, const T& c, const float (&bary)[3]) {
-  return a * bary[0] + b * bary[1] + c * bary[2];
-}
-
-Vec3f unpack_linear(std::uint32_t rgba) {
-  const auto channel = [rgba](int shift) {
-    return static_cast<float>(rgba >> shift & 255u) / 255.0f;
-  };
-  return {channel(0), channel(8), channel(16)};
-}
-
 /// One colour per row of the picture, darker downwards.
 std::vector<std::uint32_t> background_rows(std::uint32_t height) {
   std::vector<std::uint32_t> rows(height);
@@ -85,112 +57,149 @@ Vec3f cluster_color(std::uint32_t cluster) {
   return {channel(5), channel(3), channel(1)};
 }
 
-Shader::Shader(const Model& model) : model_(&model), triangle_cluster_(model.triangle_count()) {
+/// One tile on its way from hits to pixels.
+struct Shader::Tile {
+  const TileHits* hits = nullptr;
+  std::uint32_t left = 0, top = 0;      ///< in the image
+  std::uint32_t columns = 0, rows = 0;  ///< inside the image
+  std::uint32_t image_width = 0;
+  SurfaceTile surface{};
+  alignas(64) float light[kTilePixels] = {};  ///< what part of the colour is seen
+
+  Tile(const HitBuffer& image, std::size_t i)
+      : hits(&image.tile(i)),
+        left(image.tile_left(i)),
+        top(image.tile_top(i)),
+        columns(std::min(kTileSide, image.width() - left)),
+        rows(std::min(kTileSide, image.height() - top)),
+        image_width(image.width()) {}
+};
+
+Shader::Shader(const Model& model)
+    : model_(&model),
+      triangle_cluster_(model.triangle_count()),
+      is_flat_(model.triangle_count()),
+      vertex_normals_(model) {
   for (std::uint32_t c = 0; c < model.cluster_count(); ++c) {
     const Cluster& cluster = model.clusters[c];
     std::fill_n(triangle_cluster_.begin() + cluster.first_triangle, cluster.triangle_count, c);
+    cluster_colors_.push_back(cluster_color(c));
   }
-  first_corner_.assign(model.vertex_count + 1, 0);
-  for (const Triangle& t : model.triangles)
-    for (std::uint32_t v : t.v) ++first_corner_[v + 1];
-  for (std::size_t v = 0; v < model.vertex_count; ++v) first_corner_[v + 1] += first_corner_[v];
-  ring_.resize(first_corner_.back());
-  std::vector<std::uint32_t> next(first_corner_.begin(), first_corner_.end() - 1);
-  for (std::uint32_t t = 0; t < model.triangle_count(); ++t)
-    for (std::uint32_t v : model.triangles[t].v) ring_[next[v]++] = t;
-}
-
-void Shader::compute_vertex_normals(const PosedMesh& mesh) {
-  vertex_normals_.resize(model_->vertex_count);
-  const std::span<const Vec3f> positions = mesh.positions();
-  parallel_chunks(vertex_normals_.size(), 4096, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t v = begin; v < end; ++v) {
-      Vec3f sum;  // weighted by area: a cross product is twice its triangle's
-      for (std::uint32_t i = first_corner_[v]; i < first_corner_[v + 1]; ++i) {
-        const Triangle& t = model_->triangles[ring_[i]];
-        const Vec3f& a = positions[t.v[0]];
-        sum += cross(positions[t.v[1]] - a, positions[t.v[2]] - a);
-      }
-      vertex_normals_[v] = sum;
-    }
-  });
-}
-
-Vec3f Shader::shading_normal(std::uint32_t triangle, const Vec3f& face_normal,
-                             const float (&bary)[3]) const {
-  const Material& material = model_->materials[model_->triangle_materials[triangle]];
-  if (material.flags & kMaterialFlatShaded) return face_normal;
-  const Triangle& t = model_->triangles[triangle];
-  const auto corner = [&](int k) { return normalized(vertex_normals_[t.v[k]], face_normal); };
-  const Vec3f n = normalized(blend(corner(0), corner(1), corner(2), bary), face_normal);
-  return dot(n, face_normal) < 0 ? -n : n;
-}
-
-Vec3f Shader::base_color(std::uint32_t triangle, const float (&bary)[3]) const {
-  const Material& material = model_->materials[model_->triangle_materials[triangle]];
-  Vec3f color{material.base_color[0], material.base_color[1], material.base_color[2]};
-  const std::size_t corner = std::size_t{3} * triangle;
-  if (!model_->corner_colors.empty()) {
-    const auto* c = &model_->corner_colors[corner];
-    color =
-        multiply(color, blend(unpack_linear(c[0]), unpack_linear(c[1]), unpack_linear(c[2]), bary));
+  for (const Material& material : model.materials) {
+    const float* color = material.base_color;
+    material_colors_.push_back({color[0], color[1], color[2]});
+    is_unlit_.push_back((material.flags & kMaterialUnlit) != 0);
+    has_unlit_ = has_unlit_ || is_unlit_.back() != 0;
+    has_textures_ = has_textures_ || material.texture != kNoTexture;
   }
-  if (material.texture != kNoTexture && !model_->corner_texcoords.empty()) {
-    const auto* uv = &model_->corner_texcoords[corner];
+  has_textures_ = has_textures_ && !model.corner_texcoords.empty();
+  for (std::size_t t = 0; t < is_flat_.size(); ++t) {
+    const Material& material = model.materials[model.triangle_materials[t]];
+    is_flat_[t] = (material.flags & kMaterialFlatShaded) != 0;
+  }
+}
+
+ShadedMesh Shader::shaded_mesh(const PosedMesh& mesh, ShadingMode mode) const {
+  ShadedMesh shaded{};
+  shaded.triangles = model_->triangles.data();
+  shaded.positions = mesh.positions().data();
+  shaded.vertex_normals = vertex_normals_.data();
+  shaded.is_flat = is_flat_.data();
+  if (mode == ShadingMode::kClusters) {
+    shaded.palette = cluster_colors_.data();
+    shaded.palette_index = triangle_cluster_.data();
+  } else {
+    shaded.palette = material_colors_.data();
+    shaded.palette_index = model_->triangle_materials.data();
+    if (!model_->corner_colors.empty()) shaded.corner_colors = model_->corner_colors.data();
+  }
+  return shaded;
+}
+
+void Shader::apply_textures(Tile& tile) const {
+  SurfaceTile& s = tile.surface;
+  for (std::uint32_t i = 0; i < tile.rows * kTileSide; ++i) {
+    const std::uint32_t triangle = tile.hits->triangle[i];
+    if (triangle == kNoHit) continue;
+    const Material& material = model_->materials[model_->triangle_materials[triangle]];
+    if (material.texture == kNoTexture) continue;
+    const float bary[3] = {1 - s.bary1[i] - s.bary2[i], s.bary1[i], s.bary2[i]};
+    const auto* uv = &model_->corner_texcoords[std::size_t{3} * triangle];
     const TexCoord at{uv[0].u * bary[0] + uv[1].u * bary[1] + uv[2].u * bary[2],
                       uv[0].v * bary[0] + uv[1].v * bary[1] + uv[2].v * bary[2]};
-    color = multiply(
-        color, sample_texture(model_->textures[material.texture], model_->texels, at, material));
+    const Vec3f texel =
+        sample_texture(model_->textures[material.texture], model_->texels, at, material);
+    s.red[i] *= texel.x;
+    s.green[i] *= texel.y;
+    s.blue[i] *= texel.z;
   }
-  return color;
 }
 
-Vec3f Shader::shade_hit(const PosedMesh& mesh, const PinholeRays& rays, const Vec3f& direction,
-                        std::uint32_t triangle, ShadingMode mode) const {
-  Vec3f corner[3];
-  for (std::size_t k = 0; k < 3; ++k)
-    corner[k] = mesh.positions()[model_->triangles[triangle].v[k]];
-  float bary[3];
-  barycentrics(corner, rays, direction, bary);
-  Vec3f face = normalized(cross(corner[1] - corner[0], corner[2] - corner[0]));
-  Vec3f n = shading_normal(triangle, face, bary);
-  if (dot(face, direction) > 0) n = -n;  // both sides are shown alike
-  if (mode == ShadingMode::kNormals)
-    return {n.x * 0.5f + 0.5f, n.y * 0.5f + 0.5f, n.z * 0.5f + 0.5f};
+void Shader::light_tile(ShadingMode mode, Tile& tile) const {
+  SurfaceTile& s = tile.surface;
+  const std::uint32_t pixels = tile.rows * kTileSide;
+  for (std::uint32_t i = 0; i < pixels; ++i)
+    tile.light[i] = kAmbient + (1 - kAmbient) * s.facing[i];
+  if (mode == ShadingMode::kNormals) {
+    for (std::uint32_t i = 0; i < pixels; ++i) {
+      s.red[i] = s.normal_x[i] * 0.5f + 0.5f;
+      s.green[i] = s.normal_y[i] * 0.5f + 0.5f;
+      s.blue[i] = s.normal_z[i] * 0.5f + 0.5f;
+      tile.light[i] = 1;
+    }
+  }
+  if (mode != ShadingMode::kDiffuse) return;
+  if (has_textures_) apply_textures(tile);
+  if (!has_unlit_) return;
+  for (std::uint32_t i = 0; i < pixels; ++i) {
+    const std::uint32_t triangle = tile.hits->triangle[i];
+    if (triangle != kNoHit && is_unlit_[model_->triangle_materials[triangle]]) tile.light[i] = 1;
+  }
+}
 
-  const Vec3f color = mode == ShadingMode::kClusters ? cluster_color(triangle_cluster_[triangle])
-                                                     : base_color(triangle, bary);
-  const bool unlit =
-      mode == ShadingMode::kDiffuse &&
-      (model_->materials[model_->triangle_materials[triangle]].flags & kMaterialUnlit);
-  if (unlit) return color;
-  const float facing = std::max(0.0f, -dot(n, direction) / length(direction));
-  return color * (kAmbient + (1 - kAmbient) * facing);
+void Shader::write_pixels(const Tile& tile, std::span<std::uint32_t> pixels) const {
+  const SurfaceTile& s = tile.surface;
+  const auto& srgb = srgb_table();
+  alignas(64) std::int32_t red[kTileSide], green[kTileSide], blue[kTileSide];
+  for (std::uint32_t row = 0; row < tile.rows; ++row) {
+    const std::uint32_t first = row * kTileSide;
+    for (std::uint32_t i = 0; i < kTileSide; ++i) {
+      red[i] = srgb_step(s.red[first + i] * tile.light[first + i]);
+      green[i] = srgb_step(s.green[first + i] * tile.light[first + i]);
+      blue[i] = srgb_step(s.blue[first + i] * tile.light[first + i]);
+    }
+    const std::uint32_t y = tile.top + row;
+    std::uint32_t* out = pixels.data() + std::size_t{y} * tile.image_width + tile.left;
+    for (std::uint32_t i = 0; i < tile.columns; ++i) {
+      const auto byte = [&](std::int32_t step) -> std::uint32_t {
+        return srgb[static_cast<std::size_t>(step)];
+      };
+      out[i] = tile.hits->triangle[first + i] == kNoHit
+                   ? background_[y]
+                   : byte(red[i]) | byte(green[i]) << 8 | byte(blue[i]) << 16 | 0xff000000u;
+    }
+  }
 }
 
 void Shader::shade(const PosedMesh& mesh, const PinholeRays& rays, const HitBuffer& hits,
                    ShadingMode mode, std::span<std::uint32_t> pixels) {
-  compute_vertex_normals(mesh);
-  const std::vector<std::uint32_t> background = background_rows(hits.height());
-  parallel_chunks(hits.tile_count(), 8, [&](std::size_t begin, std::size_t end) {
+  background_ = background_rows(hits.height());
+  parallel_chunks(hits.height(), 64, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t y = begin; y < end; ++y)
+      std::fill_n(pixels.data() + y * hits.width(), hits.width(), background_[y]);
+  });
+  std::vector<std::uint32_t> tiles;
+  for (std::size_t i = 0; i < hits.tile_count(); ++i)
+    if (hits.tile(i).written) tiles.push_back(static_cast<std::uint32_t>(i));
+
+  vertex_normals_.update(mesh, hits, tiles);
+  const ShadedMesh shaded = shaded_mesh(mesh, mode);
+  parallel_chunks(tiles.size(), 4, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      const TileHits& tile = hits.tile(i);
-      const std::uint32_t left = hits.tile_left(i), top = hits.tile_top(i);
-      const std::uint32_t right = std::min(left + kTileSide, hits.width());
-      const std::uint32_t bottom = std::min(top + kTileSide, hits.height());
-      for (std::uint32_t y = top; y < bottom; ++y) {
-        const std::uint32_t* triangle = tile.triangle + (y - top) * kTileSide;
-        std::uint32_t* pixel = pixels.data() + std::size_t{y} * hits.width() + left;
-        for (std::uint32_t x = left; x < right; ++x, ++triangle, ++pixel) {
-          if (*triangle == kNoHit) {
-            *pixel = background[y];
-            continue;
-          }
-          const Vec3f direction =
-              rays.direction(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);
-          *pixel = pack_srgb(shade_hit(mesh, rays, direction, *triangle, mode));
-        }
-      }
+      Tile tile(hits, tiles[i]);
+      compute_surface(rays, tile.left, tile.top, shaded, *tile.hits, tile.rows, tile.surface);
+      light_tile(mode, tile);
+      write_pixels(tile, pixels);
     }
   });
 }

@@ -10,6 +10,8 @@
 #include "common/motion/posed_mesh.h"
 #include "common/trace/camera.h"
 #include "common/trace/hit_buffer.h"
+#include "common/trace/kernels/surface_kernel.h"
+#include "common/trace/vertex_normals.h"
 
 namespace mdk {
 
@@ -38,23 +40,27 @@ class Shader {
  public:
   explicit Shader(const Model& model);
 
-  /// `pixels`: width * height of the hit buffer. Runs in parallel.
+  /// `pixels`: width * height of the hit buffer. Runs in parallel. The same pixels for any number
+  /// of threads and any instruction set.
   void shade(const PosedMesh& mesh, const PinholeRays& rays, const HitBuffer& hits,
              ShadingMode mode, std::span<std::uint32_t> pixels);
 
  private:
-  void compute_vertex_normals(const PosedMesh& mesh);
-  Vec3f shade_hit(const PosedMesh& mesh, const PinholeRays& rays, const Vec3f& direction,
-                  std::uint32_t triangle, ShadingMode mode) const;
-  Vec3f shading_normal(std::uint32_t triangle, const Vec3f& face_normal,
-                       const float (&bary)[3]) const;
-  Vec3f base_color(std::uint32_t triangle, const float (&bary)[3]) const;
+  struct Tile;
+
+  ShadedMesh shaded_mesh(const PosedMesh& mesh, ShadingMode mode) const;
+  void light_tile(ShadingMode mode, Tile& tile) const;
+  void apply_textures(Tile& tile) const;
+  void write_pixels(const Tile& tile, std::span<std::uint32_t> pixels) const;
 
   const Model* model_;
+  std::vector<Vec3f> material_colors_, cluster_colors_;
   std::vector<std::uint32_t> triangle_cluster_;
-  std::vector<std::uint32_t> first_corner_;  ///< per vertex, CSR: its triangles in ring_
-  std::vector<std::uint32_t> ring_;
-  std::vector<Vec3f> vertex_normals_;
+  std::vector<std::uint8_t> is_flat_;   ///< per triangle
+  std::vector<std::uint8_t> is_unlit_;  ///< per material
+  bool has_unlit_ = false, has_textures_ = false;
+  VertexNormals vertex_normals_;
+  std::vector<std::uint32_t> background_;  ///< one colour per row
 };
 
 }  // namespace mdk

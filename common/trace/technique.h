@@ -15,9 +15,9 @@
 
 namespace mdk {
 
-/// Every technique returns brute force's closest hit, bit for bit: a structure only chooses which
-/// triangles are tested. One object serves one model; update() and trace() alternate, trace() may
-/// run on many threads at once.
+/// Every technique of ours returns brute force's closest hit, bit for bit: a structure only chooses
+/// which triangles are tested. Peers have a triangle test of their own (TechniqueInfo). One object
+/// serves one model; update() and trace() alternate, trace() may run on many threads at once.
 class Technique {
  public:
   virtual ~Technique() = default;
@@ -38,6 +38,17 @@ class Technique {
 
   /// Memory of the structures, in bytes, without the mesh itself.
   virtual std::size_t structure_bytes() const = 0;
+
+  /// One line for people about what it did and why, or nothing. Not during a frame.
+  virtual std::string note() const { return {}; }
+};
+
+enum class TechniqueKind {
+  kStructure,  ///< one way of ours: brute force's hits to the bit, counts that depend on nothing
+               ///< else
+  kAdaptive,   ///< chooses among ours by the clock: the same hits, but the counts of its choice
+  kPeer,       ///< another program with a triangle test of its own: agrees in depth, counts nothing
+  kOracle,     ///< brute force
 };
 
 struct TechniqueInfo {
@@ -46,9 +57,15 @@ struct TechniqueInfo {
   std::string_view summary;  ///< half a sentence
   std::string_view source;
   std::unique_ptr<Technique> (*make)(const Model&);
+  TechniqueKind kind = TechniqueKind::kStructure;
+
+  /// How its hits are compared with brute force's.
+  Agreement agreement() const {
+    return kind == TechniqueKind::kPeer ? Agreement::kSameDepth : Agreement::kBitIdentical;
+  }
 };
 
-/// All techniques, best known first, brute force last.
+/// All techniques, best known first, then peers where they were built in, brute force last.
 std::span<const TechniqueInfo> technique_table();
 
 /// The row with this id; throws Error (kUsage) with the ids there are.

@@ -18,8 +18,26 @@ std::span<const TechniqueInfo> technique_table() {
        make_rebuild_bvh},
       {"refit-bvh", "Refitted BVH", "hierarchy of the rest pose, boxes refitted every frame",
        "Lo09 §4.2", make_refit_bvh},
+      {"tsah-refit", "T-SAH, refitted", "hierarchy built for several poses at once, refitted",
+       "Bittner and Meister 2015", make_tsah_refit},
+      {"hybrid-bvh", "Hybrid BVH", "refitted until motion has spoilt it, then built anew",
+       "Lo09 §5.4", make_hybrid_bvh},
+      {"decomp-refit", "Clusters, refitted", "motion clusters, their hierarchies refitted",
+       "Lo09 §4.4", make_decomp_refit},
+      {"auto", "Automatic", "whichever of ours measures cheapest here", "measured", make_auto,
+       TechniqueKind::kAdaptive},
+#ifdef MDK_HAVE_EMBREE
+      {"embree", "Embree", "a peer, in the mode that measures best", "Embree 3", make_embree,
+       TechniqueKind::kPeer},
+      {"embree-refit", "Embree, refitted", "a peer: its hierarchy refitted every frame", "Embree 3",
+       make_embree_refit, TechniqueKind::kPeer},
+      {"embree-low", "Embree, rebuilt fast", "a peer: built anew every frame, low quality",
+       "Embree 3", make_embree_low, TechniqueKind::kPeer},
+      {"embree-medium", "Embree, rebuilt", "a peer: built anew every frame, medium quality",
+       "Embree 3", make_embree_medium, TechniqueKind::kPeer},
+#endif
       {"brute-force", "Brute force", "every triangle for every tile: the oracle", "–",
-       make_brute_force},
+       make_brute_force, TechniqueKind::kOracle},
   };
   return kTable;
 }

@@ -75,6 +75,10 @@ std::vector<std::string> table_row(const std::string& model, const TechniqueBenc
           std::to_string(technique.hit_mismatches)};
 }
 
+std::string name_of(const ModelBench& model) {
+  return std::filesystem::path(model.file).stem().string();
+}
+
 }  // namespace
 
 void print_bench_table(std::ostream& out, std::span<const ModelBench> models) {
@@ -84,8 +88,12 @@ void print_bench_table(std::ostream& out, std::span<const ModelBench> models) {
                  "mismatches"});
   for (const ModelBench& model : models)
     for (const TechniqueBench& technique : model.techniques)
-      table.add_row(table_row(std::filesystem::path(model.file).stem().string(), technique));
+      table.add_row(table_row(name_of(model), technique));
   table.print(out);
+  for (const ModelBench& model : models)
+    for (const TechniqueBench& technique : model.techniques)
+      if (!technique.note.empty())
+        out << name_of(model) << " " << technique.id << ": " << technique.note << "\n";
 }
 
 std::string bench_json(const BenchMachine& machine, std::span<const ModelBench> models) {
@@ -94,6 +102,7 @@ std::string bench_json(const BenchMachine& machine, std::span<const ModelBench> 
     Json techniques = Json::array();
     for (const TechniqueBench& technique : model.techniques) {
       Json row = technique_row(technique);
+      if (!technique.note.empty()) row["note"] = technique.note;
       row["frames"] = frame_rows(technique);
       techniques.push_back(std::move(row));
     }

@@ -38,7 +38,8 @@ void count_and_judge(const Model& model, const BenchConfig& config, Renderers& r
       results[i].counters += stats.counters;
       results[i].rays += stats.rays;
       results[i].prebuild_ms += stats.prebuild_ms;
-      results[i].hit_mismatches += count_mismatches(renderers[i]->hits(), oracle.hits());
+      results[i].hit_mismatches += count_mismatches(renderers[i]->hits(), oracle.hits(),
+                                                    find_technique(results[i].id).agreement());
     }
     progress.report("count", static_cast<double>(k + 1) * share);
   }
@@ -102,8 +103,10 @@ std::vector<TechniqueBench> bench_techniques(const Model& model, const BenchConf
     const std::size_t i = (turn + turn / count) % count;  // each round starts one further on
     time_round(config, *renderers[i], results[i]);
   }
-  for (std::size_t i = 0; i < count; ++i)
+  for (std::size_t i = 0; i < count; ++i) {
     results[i].structure_bytes = renderers[i]->structure_bytes();
+    results[i].note = renderers[i]->technique_note();
+  }
   return results;
 }
 

@@ -42,8 +42,9 @@ struct TechniqueBench {
   TraceCounters counters;  ///< over all frames, from pass 0
   std::uint64_t rays = 0;  ///< over all frames
   std::uint64_t structure_bytes = 0;
-  double prebuild_ms = 0;  ///< all work ahead of time for these keys
-  std::uint64_t hit_mismatches = 0;
+  double prebuild_ms = 0;            ///< all work ahead of time for these keys
+  std::uint64_t hit_mismatches = 0;  ///< by what the technique promises (TechniqueInfo)
+  std::string note;                  ///< of the technique after its last frame, or empty
 
   /// Medians over the frames, phase by phase; time to image has a median of its own.
   FrameStats median_phases() const;

@@ -53,7 +53,7 @@ std::vector<CheckResult> check_hits(const Model& model, const HitCheckConfig& co
   Renderer oracle(model, "brute-force");
   std::vector<std::unique_ptr<JudgedTechnique>> techniques;
   for (const TechniqueInfo& technique : technique_table())
-    if (technique.id != oracle.technique_id())
+    if (technique.kind != TechniqueKind::kOracle && technique.kind != TechniqueKind::kPeer)
       techniques.push_back(std::make_unique<JudgedTechnique>(model, technique.id));
 
   FrameRequest request;

@@ -232,8 +232,7 @@ CommandBody add_render_command(CLI::App& command) {
   command
       .add_option("--technique", arguments->technique,
                   "One of " + technique_ids() +
-                      "\n(default: fuzzy-bvh). The picture is the "
-                      "same with each.")
+                      "\n(default: fuzzy-bvh). The picture is the same with each of ours.")
       ->type_name("ID");
   add_view_options(command, arguments->view);
   command

@@ -11,8 +11,6 @@
 namespace mdk {
 namespace {
 
-constexpr std::string_view kOracle = "brute-force";
-
 std::uint32_t parse_side(std::string_view whole, std::string_view text) {
   std::uint64_t side = 0;
   const char* end = text.data() + text.size();
@@ -96,7 +94,7 @@ std::vector<std::string> parse_techniques(const std::string& text) {
   std::vector<std::string> ids;
   if (text == "all") {
     for (const TechniqueInfo& technique : technique_table())
-      if (technique.id != kOracle) ids.emplace_back(technique.id);
+      if (technique.kind != TechniqueKind::kOracle) ids.emplace_back(technique.id);
     return ids;
   }
   for (const std::string& id : split(text, ',')) {

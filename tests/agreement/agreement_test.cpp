@@ -50,7 +50,7 @@ class ResetIsa {
   ~ResetIsa() { reset_isa(); }
 };
 
-TEST(Agreement, EveryTechniqueGivesBruteForcesHitsOnEveryScene) {
+TEST(Agreement, EveryTechniqueOfOursGivesBruteForcesHitsOnEveryScene) {
   for (auto& [name, sequence] : test::agreement_scenes()) {
     const DecomposeResult baked = bake(std::move(sequence));
     const Model model = baked.model.view();
@@ -61,6 +61,7 @@ TEST(Agreement, EveryTechniqueGivesBruteForcesHitsOnEveryScene) {
         const FrameRequest request{.at = at, .camera = camera, .width = 75, .height = 61};
         hits += oracle.trace(request).hits;
         for (const TechniqueInfo& technique : technique_table()) {
+          if (technique.kind == TechniqueKind::kPeer) continue;
           renderer.set_technique(technique.id);
           renderer.trace(request);
           EXPECT_EQ(count_mismatches(oracle.hits(), renderer.hits()), 0u)
@@ -85,6 +86,7 @@ TEST(Agreement, HoldsInEveryTimeSegmentAndAtTheCuts) {
         .at = at, .camera = fit_camera(model.bounds, 1.0), .width = 75, .height = 61};
     EXPECT_GT(oracle.trace(request).hits, 0u);
     for (const TechniqueInfo& technique : technique_table()) {
+      if (technique.kind == TechniqueKind::kPeer) continue;
       renderer.set_technique(technique.id);
       renderer.trace(request);
       EXPECT_EQ(count_mismatches(oracle.hits(), renderer.hits()), 0u)
@@ -111,6 +113,7 @@ TEST(Agreement, HitsAndCountsDoNotDependOnInstructionSetOrThreads) {
                              .height = 100,
                              .counting = Counting::kOn};
   for (const TechniqueInfo& technique : technique_table()) {
+    if (technique.kind == TechniqueKind::kPeer) continue;
     reset_isa();
     Renderer reference(model, technique.id);
     const FrameStats expected = reference.render(request);
@@ -128,6 +131,29 @@ TEST(Agreement, HitsAndCountsDoNotDependOnInstructionSetOrThreads) {
             << technique.id << " " << isa << " " << threads;
         EXPECT_EQ(got.counters.triangle_tests > 0, true);
       }
+  }
+}
+
+TEST(Agreement, PeersSeeTheSameDepthsButForSinglePixelsOnEdges) {
+  const ResetIsa reset;
+  const DecomposeResult baked = bake(test::bending_tube(40, 24, 12));
+  const Model model = baked.model.view();
+  Renderer oracle(model, "brute-force");
+  for (const TechniqueInfo& technique : technique_table()) {
+    if (technique.kind != TechniqueKind::kPeer) continue;
+    for (const std::string_view isa : available_isas()) {
+      limit_isa(isa);
+      Renderer peer(model, technique.id);
+      std::uint64_t hits = 0, mismatches = 0;
+      for (const KeyInterval& at : moments_of(model)) {
+        const FrameRequest request{
+            .at = at, .camera = fit_camera(model.bounds, 1.5), .width = 300, .height = 200};
+        hits += oracle.trace(request).hits;
+        peer.trace(request);
+        mismatches += count_mismatches(peer.hits(), oracle.hits(), technique.agreement());
+      }
+      EXPECT_LE(mismatches, hits / 2000) << technique.id << " " << isa;
+    }
   }
 }
 

@@ -45,16 +45,19 @@ TEST_F(Bench, JsonHasExactlyTheFieldsOfTheContractAndNoMismatch) {
   EXPECT_EQ(model["keys"], kSampleKeys);
   ASSERT_EQ(model["techniques"].size() + 1, technique_table().size());
   for (const Json& row : model["techniques"]) {
-    EXPECT_EQ(names_of(row),
-              (std::vector<std::string>{
-                  "id", "pose_ms", "update_ms", "trace_ms", "shade_ms", "time_to_image_ms", "fps",
-                  "node_visits_per_ray", "triangle_tests_per_ray", "clusters_per_ray",
-                  "structure_bytes", "prebuild_ms", "hit_mismatches", "frames"}));
+    std::vector<std::string> names = names_of(row);
+    std::erase(names, "note");  // only where there is something to say
+    EXPECT_EQ(names, (std::vector<std::string>{
+                         "id", "pose_ms", "update_ms", "trace_ms", "shade_ms", "time_to_image_ms",
+                         "fps", "node_visits_per_ray", "triangle_tests_per_ray", "clusters_per_ray",
+                         "structure_bytes", "prebuild_ms", "hit_mismatches", "frames"}));
     EXPECT_NE(row["id"], "brute-force");
-    EXPECT_EQ(row["hit_mismatches"], 0) << row["id"];
     EXPECT_GT(row["time_to_image_ms"], 0.0);
-    EXPECT_GT(row["node_visits_per_ray"], 0.0) << row["id"];
-    EXPECT_GT(row["triangle_tests_per_ray"], 0.0) << row["id"];
+    if (find_technique(row["id"].get<std::string>()).kind != TechniqueKind::kPeer) {
+      EXPECT_EQ(row["hit_mismatches"], 0) << row["id"];
+      EXPECT_GT(row["node_visits_per_ray"], 0.0) << row["id"];
+      EXPECT_GT(row["triangle_tests_per_ray"], 0.0) << row["id"];
+    }
     EXPECT_GT(row["structure_bytes"], 0) << row["id"];
     ASSERT_EQ(row["frames"].size(), 5u);
     EXPECT_EQ(names_of(row["frames"][0]),
@@ -71,8 +74,10 @@ TEST_F(Bench, CountsAreTheSameEveryTime) {
     const Json report = Json::parse(read_text(folder_.file("b.json")));
     std::vector<double> found;
     for (const Json& row : report["models"][0]["techniques"])
-      for (const char* name : {"node_visits_per_ray", "triangle_tests_per_ray", "clusters_per_ray"})
-        found.push_back(row[name]);
+      if (find_technique(row["id"].get<std::string>()).kind != TechniqueKind::kAdaptive)
+        for (const char* name :
+             {"node_visits_per_ray", "triangle_tests_per_ray", "clusters_per_ray"})
+          found.push_back(row[name]);
     return found;
   };
   EXPECT_EQ(counts("1"), counts("2"));

@@ -50,5 +50,21 @@ TEST(HitBuffer, MismatchIsAnotherTriangleOrAnotherBitOfDepth) {
   EXPECT_EQ(a.triangle(5, 0), 7u);
 }
 
+TEST(HitBuffer, APeerMayNameTheOtherTriangleAtTheSameDepthButNotMissIt) {
+  HitBuffer a = make_hits(16, 16), b = make_hits(16, 16);
+  const auto mismatches = [&] { return count_mismatches(a, b, Agreement::kSameDepth); };
+  a.tile(0).triangle[5] = 7;
+  a.tile(0).t[5] = 2.0f;
+  EXPECT_EQ(mismatches(), 1u);
+  b.tile(0).triangle[5] = 8;
+  b.tile(0).t[5] = 2.00001f;
+  EXPECT_EQ(mismatches(), 0u);
+  EXPECT_EQ(count_mismatches(a, b), 1u);
+  b.tile(0).t[5] = 2.0001f;
+  EXPECT_EQ(mismatches(), 1u);
+  b.tile(0).triangle[5] = 7;  // the same triangle, seen edge-on
+  EXPECT_EQ(mismatches(), 0u);
+}
+
 }  // namespace
 }  // namespace mdk

@@ -1,0 +1,196 @@
+#include "common/trace/techniques/technique_chooser.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <numeric>
+
+#include "common/base/parallel.h"
+#include "common/base/stopwatch.h"
+
+namespace mdk {
+namespace {
+
+constexpr std::size_t kMostTimedTiles = 16384;
+constexpr std::size_t kTilesPerOutlier = 32;
+constexpr int kTrialsToSettle = 2;
+constexpr std::size_t kFramesBetweenChecks = 64;
+constexpr double kHopeless = 1.4;  ///< times the best: not worth a second trial
+constexpr double kWorthChanging = 0.98;
+constexpr double kTrialShare = 0.03;     ///< of all frames' time
+constexpr double kFramesInAdvance = 25;  ///< trials may spend the share of so many frames to come
+constexpr double kUnknownExcess = 0.3;   ///< expected of a first trial, in frames
+constexpr std::size_t kMostViews = 32;
+
+/// One in four, the same in every frame.
+bool is_timed(const TileRays& tile) { return (tile.x + 2 * tile.y) / kTileSide % 4 == 0; }
+
+template <class... Values>
+std::string formatted(const char* format, Values... values) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), format, values...);
+  return text.data();
+}
+
+}  // namespace
+
+TechniqueChooser::TechniqueChooser(const Model& model,
+                                   std::span<const TechniqueCandidate> candidates)
+    : model_(model),
+      candidates_(candidates),
+      techniques_(candidates.size()),
+      tile_ms_(kMostTimedTiles) {}
+
+void TechniqueChooser::prebuild(const PosedMesh& mesh) {
+  if (!views_.empty()) {
+    View& view = views_.back();
+    const double frame_ms = measured_frame_ms();
+    if (!is_first_frame_ && frame_ms > 0) learn(view, frame_ms);
+    serving_ = next_to_serve(view);
+  }
+  candidate(serving_).prebuild(mesh);
+}
+
+void TechniqueChooser::update(const PosedMesh& mesh) {
+  const Stopwatch watch;
+  candidate(serving_).update(mesh);
+  update_ms_ = watch.milliseconds();
+}
+
+void TechniqueChooser::set_view(const PinholeRays& rays) {
+  is_first_frame_ = views_.empty() || !is_near(views_.back().rays, rays);
+  if (is_first_frame_) enter_view(rays);
+  ++views_.back().frames;
+  candidate(serving_).set_view(rays);
+  tiles_ = timed_ = 0;
+}
+
+void TechniqueChooser::trace(const TileRays& tile, TileHits& hits, TileScratch& scratch,
+                             TraceCounters* counters) const {
+  const Technique& serving = *techniques_[serving_];
+  tiles_.fetch_add(1, std::memory_order_relaxed);
+  const std::size_t number = is_timed(tile) ? timed_++ : kMostTimedTiles;
+  const Stopwatch watch;
+  serving.trace(tile, hits, scratch, counters);
+  if (number < kMostTimedTiles) tile_ms_[number] = static_cast<float>(watch.milliseconds());
+}
+
+std::size_t TechniqueChooser::structure_bytes() const {
+  std::size_t bytes = 0;
+  for (const auto& technique : techniques_)
+    if (technique != nullptr) bytes += technique->structure_bytes();
+  return bytes;
+}
+
+std::string TechniqueChooser::note() const {
+  if (views_.empty()) return {};
+  const View& view = views_.back();
+  std::string text(candidates_[view.incumbent].id);
+  if (view.unit_ms > 0) text += formatted(", %.1f ms", view.cost_ms(view.incumbent));
+  const double best = view.standings[view.incumbent].relative_cost;
+  const char* separator = "; ";
+  for (std::size_t i = 0; i < candidates_.size(); ++i) {
+    const Standing& standing = view.standings[i];
+    if (i == view.incumbent || standing.trials == 0) continue;
+    text.append(separator).append(candidates_[i].id);
+    text += formatted(" %+.0f %%", (standing.relative_cost / best - 1) * 100);
+    separator = ", ";
+  }
+  return text;
+}
+
+Technique& TechniqueChooser::candidate(std::size_t i) {
+  if (techniques_[i] == nullptr) techniques_[i] = candidates_[i].make(model_);
+  return *techniques_[i];
+}
+
+/// Whether a choice made for `a` can be expected to hold for `b`.
+bool TechniqueChooser::is_near(const PinholeRays& a, const PinholeRays& b) const {
+  const float distance =
+      std::max(length(a.origin - model_.bounds.center()), 0.1f * model_.bounds.diagonal());
+  if (length(b.origin - a.origin) > 0.2f * distance) return false;
+  const float zoom = length(b.du) / length(a.du);
+  if (!(zoom > 0.75f && zoom < 1.33f)) return false;
+  return dot(normalized(cross(a.du, a.dv)), normalized(cross(b.du, b.dv))) > 0.95f;
+}
+
+/// The entry of this view, now the last one; a new one begins with the choice of the last view.
+TechniqueChooser::View& TechniqueChooser::enter_view(const PinholeRays& rays) {
+  const auto known = std::find_if(views_.begin(), views_.end(),
+                                  [&](const View& view) { return is_near(view.rays, rays); });
+  if (known != views_.end()) {
+    std::rotate(known, known + 1, views_.end());
+    return views_.back();
+  }
+  View view;
+  view.rays = rays;
+  view.standings.resize(candidates_.size());
+  view.incumbent = view.last_challenger = serving_;
+  view.next_check = kFramesBetweenChecks;
+  if (views_.size() == kMostViews) views_.erase(views_.begin());
+  views_.push_back(std::move(view));
+  return views_.back();
+}
+
+/// Update and trace of the last frame, from its timed tiles; 0 where there were none.
+double TechniqueChooser::measured_frame_ms() {
+  const std::size_t timed = std::min<std::size_t>(timed_, kMostTimedTiles);
+  if (timed == 0) return 0;
+  // Tiles that take extremely long were interrupted: left out, for all candidates alike.
+  const auto end = tile_ms_.begin() + static_cast<std::ptrdiff_t>(timed);
+  const auto kept = tile_ms_.begin() + static_cast<std::ptrdiff_t>(timed / kTilesPerOutlier);
+  std::nth_element(tile_ms_.begin(), kept, end, std::greater<>());
+  const double per_tile = std::accumulate(kept, end, 0.0) / static_cast<double>(end - kept);
+  return update_ms_ + per_tile * static_cast<double>(tiles_) / thread_count();
+}
+
+void TechniqueChooser::learn(View& view, double frame_ms) const {
+  Standing& served = view.standings[serving_];
+  if (serving_ == view.incumbent || view.unit_ms == 0) {
+    const double unit = frame_ms / served.relative_cost;
+    view.unit_ms = view.unit_ms == 0 ? unit : (view.unit_ms + unit) / 2;
+    return;
+  }
+  const double relative = frame_ms / view.unit_ms;
+  served.relative_cost = served.trials == 0 ? relative : (served.relative_cost + relative) / 2;
+  ++served.trials;
+  view.spent_ms += std::max(0.0, frame_ms - view.cost_ms(view.incumbent));
+  const Standing& incumbent = view.standings[view.incumbent];
+  if (served.relative_cost < kWorthChanging * incumbent.relative_cost) {
+    view.standings[view.incumbent].trials = std::max(1, incumbent.trials);
+    view.incumbent = serving_;
+  }
+}
+
+/// The incumbent, or a challenger: those whose trials are not complete, in turn; later, at long
+/// intervals, each again. Between two trials the incumbent serves, to be measured beside them.
+std::size_t TechniqueChooser::next_to_serve(View& view) const {
+  const bool was_trial = serving_ != view.incumbent;
+  if (was_trial || view.unit_ms == 0) return view.incumbent;
+  const auto is_settled = [&](std::size_t i) {
+    const Standing& standing = view.standings[i];
+    return standing.trials >= kTrialsToSettle ||
+           (standing.trials > 0 && view.cost_ms(i) > kHopeless * view.cost_ms(view.incumbent));
+  };
+  const bool check = view.frames >= view.next_check;
+  for (std::size_t step = 1; step <= candidates_.size(); ++step) {
+    const std::size_t i = (view.last_challenger + step) % candidates_.size();
+    const bool settled = is_settled(i);
+    if (i == view.incumbent || (settled && !check) || !can_afford(view, i)) continue;
+    if (settled) view.next_check = view.frames + kFramesBetweenChecks;
+    view.last_challenger = i;
+    return i;
+  }
+  return view.incumbent;
+}
+
+bool TechniqueChooser::can_afford(const View& view, std::size_t challenger) const {
+  const double frame_ms = view.cost_ms(view.incumbent);
+  const double excess = view.standings[challenger].trials > 0
+                            ? std::max(0.0, view.cost_ms(challenger) - frame_ms)
+                            : kUnknownExcess * frame_ms;
+  const double frames = kFramesInAdvance + static_cast<double>(view.frames);
+  return view.spent_ms + excess <= kTrialShare * frames * frame_ms;
+}
+
+}  // namespace mdk
