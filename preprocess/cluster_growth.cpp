@@ -144,7 +144,10 @@ Growth grow_clusters(const MovingMesh& mesh, std::uint32_t rest_row, const Growt
       rule.give_up();
       break;
     }
-    state = next.cluster_count > state.cluster_count ? std::move(next) : split_largest(mesh, state);
+    state = next.cluster_count > state.cluster_count
+                ? std::move(next)
+                : fit_assignment(mesh, state.rest_row,
+                                 halve_largest(mesh, state.rest_row, state.cluster_of_triangle));
   }
   growth.clustering = rule.take_best();
   growth.stop_reason = rule.reason();

@@ -67,6 +67,7 @@ struct FaceSums {
     yz += ey * ez;
     zx += ez * ex;
   }
+  FaceSums operator*(double f) const { return {xy * f, yz * f, zx * f}; }
   double area(const AreaWeights& w) const { return 2 * (w.xy * xy + w.yz * yz + w.zx * zx); }
 };
 

@@ -9,24 +9,19 @@
 #include "common/base/error.h"
 #include "common/base/parallel.h"
 #include "common/base/stopwatch.h"
-#include "preprocess/cluster_growth.h"
 #include "preprocess/key_maps.h"
-#include "preprocess/key_sampling.h"
-#include "preprocess/local_frame.h"
 #include "preprocess/model_assembly.h"
+#include "preprocess/motion_clusters.h"
+#include "preprocess/pose_table.h"
 #include "preprocess/segments.h"
 
 namespace mdk {
 namespace {
 
 constexpr std::uint32_t kMaxClusters = 1024;
+constexpr double kDecomposedAt = 0.85;  // share of the whole job, for progress alone
+constexpr double kClusteredAt = 0.8, kMappedAt = 0.95;  // shares of the decomposition
 constexpr float kLargestCoordinate = 1e15f;  // areas and volumes must stay far inside float
-
-// Clusters are grown on few keys and polished on many: entries (keys times vertices) of the tables.
-constexpr std::size_t kGrowthEntries = 250'000;
-constexpr std::uint32_t kMinGrowthKeys = 10, kMaxGrowthKeys = 48;
-constexpr std::size_t kPolishEntries = 8'000'000;
-constexpr LloydOptions kPolish = {.min_gain = 0.002, .max_rounds = 8};
 
 void check_positions(const PoseSequence& sequence) {
   constexpr std::size_t kChunk = 1 << 16;
@@ -65,85 +60,6 @@ void check_input(const PoseSequence& sequence, const DecomposeOptions& options) 
   check_positions(sequence);
 }
 
-PoseTable sampled_table(const PoseSequence& sequence, std::uint32_t count,
-                        std::optional<std::uint32_t> also, double unit) {
-  KeySamplingOptions sampling;
-  sampling.count = count;
-  std::vector<std::uint32_t> keys = sample_keys(sequence, sampling);
-  if (also && !std::binary_search(keys.begin(), keys.end(), *also))
-    keys.insert(std::lower_bound(keys.begin(), keys.end(), *also), *also);
-  return make_pose_table(sequence, keys, unit);
-}
-
-std::uint32_t growth_keys(const PoseSequence& sequence) {
-  const std::size_t affordable = kGrowthEntries / std::max(1u, sequence.vertex_count);
-  return static_cast<std::uint32_t>(
-      std::clamp<std::size_t>(affordable, kMinGrowthKeys, kMaxGrowthKeys));
-}
-
-/// Some Lloyd rounds and a last look at the rest pose, on as many keys as memory and time allow.
-Clustering polish(const MovingMesh& mesh, Clustering start, const GrowthOptions& options) {
-  const auto improve = [&](Clustering candidate) {
-    if (candidate.cluster_count == start.cluster_count &&
-        clustering_cost(mesh, candidate, options.cost) < clustering_cost(mesh, start, options.cost))
-      start = std::move(candidate);
-  };
-  improve(relax(mesh, start, kPolish));
-  if (!options.fixed_rest) start = with_better_rest_pose(mesh, start, options.cost);
-  improve(relax(mesh, start, kPolish));
-  return start;
-}
-
-/// What clustering decides.
-struct Decision {
-  std::uint32_t rest_key = 0;
-  std::vector<std::uint32_t> cluster_of_triangle;
-  std::uint32_t cluster_count = 1;
-  std::vector<Affine3d> local_from_rest;
-  std::vector<GrowthStep> steps;
-  std::string stop_reason;
-};
-
-Decision cluster_motion(const PoseSequence& sequence, const DecomposeOptions& options, double unit,
-                        ProgressSink& progress) {
-  GrowthOptions growth_options;
-  growth_options.clusters = options.clusters;
-  growth_options.stop_percent = options.stop_percent;
-  growth_options.fixed_rest = options.rest_key.has_value();
-
-  const VertexTriangles neighbors =
-      make_vertex_triangles(sequence.triangles, sequence.vertex_count);
-  const PoseTable few = sampled_table(sequence, growth_keys(sequence), options.rest_key, unit);
-  progress.report("decompose", 0.05);
-  Growth growth = grow_clusters(
-      {few, sequence.triangles, neighbors},
-      options.rest_key ? row_of_key(few, *options.rest_key) : 0, growth_options,
-      [&](const GrowthStep& step) {
-        progress.report("decompose", 0.05 + 0.7 * step.clusters / (step.clusters + 12.0));
-      });
-
-  const std::uint32_t rest_key = few.keys[growth.clustering.rest_row];
-  const std::size_t affordable = kPolishEntries / std::max(1u, sequence.vertex_count);
-  const auto many_keys = static_cast<std::uint32_t>(
-      std::clamp<std::size_t>(affordable, few.row_count(), sequence.key_count()));
-  const PoseTable many = sampled_table(sequence, many_keys, rest_key, unit);
-  const MovingMesh mesh{many, sequence.triangles, neighbors};
-  progress.report("decompose", 0.8);
-  const Clustering polished =
-      polish(mesh,
-             fit_assignment(mesh, row_of_key(many, rest_key),
-                            std::move(growth.clustering.cluster_of_triangle)),
-             growth_options);
-
-  const ClusterMembers members =
-      make_cluster_members(sequence.triangles, polished.cluster_of_triangle, polished.cluster_count,
-                           sequence.vertex_count);
-  const LocalFrames frames =
-      choose_local_frames(many, members, polished.maps.maps, growth_options.cost);
-  return {many.keys[polished.rest_row], polished.cluster_of_triangle, polished.cluster_count,
-          frames.local_from_rest,       std::move(growth.steps),      growth.stop_reason};
-}
-
 std::vector<std::string> segment_notes(const DecomposeOptions& options, std::size_t segments) {
   if (options.segments <= segments) return {};
   return {std::to_string(options.segments) +
@@ -158,7 +74,7 @@ double residual_unit(double rest_diagonal, double unit) {
   return rest_diagonal > 0 ? rest_diagonal : unit;
 }
 
-DecomposeStats make_stats(const Decision& decision, const AssembledModel& assembled,
+DecomposeStats make_stats(const MotionClusters& decision, const AssembledModel& assembled,
                           const ResidualStats& residual, double unit) {
   const double length = residual_unit(assembled.model.rest_diagonal, unit);
   DecomposeStats stats;
@@ -167,9 +83,32 @@ DecomposeStats make_stats(const Decision& decision, const AssembledModel& assemb
   stats.residual_rms = residual.rms / length;
   stats.residual_max = residual.max / length;
   stats.sah_cost = assembled.expected_work;
-  for (const GrowthStep& s : decision.steps)
-    stats.steps.push_back({s.clusters, s.residual_rms * unit / length, s.cost});
+  for (const ClusteringStep& s : decision.steps)
+    stats.steps.push_back({s.clusters, s.residual_rms * unit / length, s.sah_cost});
   return stats;
+}
+
+MotionClusters decide_clusters(const PoseSequence& sequence, const DecomposeOptions& options,
+                               double unit, ProgressSink& progress) {
+  if (options.mode == DecomposeMode::kMotion)
+    return options.stop_percent ? cluster_by_residuals(sequence, options, unit, progress)
+                                : cluster_by_boxes(sequence, options, unit, progress);
+  MotionClusters one;
+  one.rest_key = options.rest_key.value_or(0);
+  one.cluster_of_triangle.assign(sequence.triangles.size(), 0);
+  return one;
+}
+
+KeyMaps decide_maps(const PoseSequence& sequence, const MotionClusters& decision,
+                    const ClusterMembers& members, const DecomposeOptions& options,
+                    ProgressSink& progress) {
+  if (options.mode == DecomposeMode::kNone) return identity_key_maps(sequence, members);
+  const KeyMapRequest request{decision.rest_key, pose_unit(sequence), options.refine};
+  if (options.stop_percent && !options.refine)
+    return fit_key_maps(sequence, members, request, decision.local_from_rest);
+  return fit_small_boxes(sequence, members, request, [&](double share) {
+    progress.report("decompose", kClusteredAt + (kMappedAt - kClusteredAt) * share);
+  });
 }
 
 }  // namespace
@@ -178,34 +117,29 @@ DecomposeResult decompose(PoseSequence sequence, const DecomposeOptions& options
                           ProgressSink& progress) {
   check_input(sequence, options);
   Stopwatch watch;
-  progress.report("decompose", 0);
+  ProgressPart decomposing(progress, 0, kDecomposedAt);
+  decomposing.report("decompose", 0);
   const double unit = pose_unit(sequence);
-  const bool motion = options.mode == DecomposeMode::kMotion;
-  Decision decision;
-  if (motion) {
-    decision = cluster_motion(sequence, options, unit, progress);
-  } else {
-    decision.rest_key = options.rest_key.value_or(0);
-    decision.cluster_of_triangle.assign(sequence.triangles.size(), 0);
-    decision.stop_reason = "none";
-  }
+  const MotionClusters decision = decide_clusters(sequence, options, unit, decomposing);
   const ClusterMembers members =
       make_cluster_members(sequence.triangles, decision.cluster_of_triangle, decision.cluster_count,
                            sequence.vertex_count);
-  KeyMaps maps =
-      motion ? fit_key_maps(sequence, members, decision.rest_key, decision.local_from_rest, unit)
-             : identity_key_maps(sequence, members, decision.rest_key);
+  KeyMaps maps = decide_maps(sequence, decision, members, options, decomposing);
+  const ResidualStats residual =
+      residual_stats(sequence, members, maps.local_from_world, decision.rest_key);
+  decomposing.report("decompose", 0.95);
   ModelParts parts{std::move(maps.local_from_world), {}, decision.rest_key};
-  progress.report("decompose", 0.95);
   parts.segments =
       choose_segments(sequence, members, parts.local_from_world, {.count = options.segments});
-  progress.report("decompose", 1);
+  decomposing.report("decompose", 1);
   const double decompose_seconds = watch.lap();
 
+  ProgressPart building(progress, kDecomposedAt, 1);
   AssembledModel assembled =
-      assemble_model(std::move(sequence), members, std::move(parts), progress);
+      assemble_model(std::move(sequence), members, std::move(parts), building);
   DecomposeResult result;
-  result.stats = make_stats(decision, assembled, maps.residual, unit);
+  result.stats = make_stats(decision, assembled, residual, unit);
+  result.stats.refine_gain = maps.refine_gain;
   result.stats.notes = segment_notes(options, assembled.model.segments.size());
   result.stats.decompose_seconds = decompose_seconds;
   result.stats.build_seconds = watch.seconds();
