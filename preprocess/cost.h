@@ -20,7 +20,7 @@
 namespace mdk {
 
 struct CostOptions {
-  double transform_cost = 6;  ///< of entering a cluster, in units of one triangle test
+  double transform_cost = 3;  ///< of entering a cluster, in units of one triangle test
   double outlier = 8;         ///< see above; at least 1
 };
 

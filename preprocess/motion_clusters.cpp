@@ -180,6 +180,7 @@ MotionClusters cluster_by_boxes(const PoseSequence& sequence, const DecomposeOpt
   result.stop_reason = growth.stop_reason;
   result.cluster_of_triangle = growth.clustering.cluster_of_triangle;
   result.cluster_count = growth.clustering.cluster_count();
+  rough.steps.pop_back();  // the fine growth starts with it again
   for (const std::vector<BoxGrowthStep>& steps : {rough.steps, growth.steps})
     for (const BoxGrowthStep& s : steps)
       result.steps.push_back({s.clusters, s.residual_rms, s.cost});

@@ -28,11 +28,12 @@ struct DecomposeOptions {
   bool refine = true;                     ///< improve maps towards the smallest boxes
 };
 
-/// What happened while clusters were added; row i is the state with i + 1 clusters.
+/// What happened while clusters were added, stage by stage, on the keys that were looked at then.
 struct ClusteringStep {
   std::uint32_t clusters = 0;
-  double residual_rms = 0;  ///< relative to the rest pose's diagonal
-  double sah_cost = 0;      ///< expected work per ray that meets the model (docs/method.md, cost)
+  double residual_rms = 0;  ///< about the boxes' middles (with stop_percent: the rest pose),
+                            ///< relative to the rest pose's diagonal
+  double sah_cost = 0;  ///< expected work per ray that meets the model (docs/method.md, cost)
 };
 
 struct DecomposeStats {
