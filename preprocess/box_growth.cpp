@@ -34,17 +34,26 @@ BoxClustering filled_up(const BoxProblem& problem, BoxClustering clustering, std
   return clustering;
 }
 
-/// One stage: cut, relax, dissolve what no longer pays.
-BoxClustering next_stage(const BoxProblem& problem, const BoxClustering& clustering,
-                         const BoxGrowthOptions& options) {
+/// Clusters cut where that gains more than `least_gain`, relaxed.
+BoxClustering cut_and_relaxed(const BoxProblem& problem, const BoxClustering& clustering,
+                              const BoxGrowthOptions& options, double least_gain) {
   const std::uint32_t most = options.clusters != 0 ? options.clusters : options.limit;
   const std::uint32_t room = most - std::min(most, clustering.cluster_count());
-  BoxClustering next =
-      make_splits(problem, clustering, find_splits(problem, clustering),
-                  std::min(room, clustering.cluster_count()), options.least_cut_gain);
+  BoxClustering next = make_splits(problem, clustering, find_splits(problem, clustering),
+                                   std::min(room, clustering.cluster_count()), least_gain);
   if (next.cluster_count() == clustering.cluster_count()) return clustering;
-  next = relax_boxes(problem, std::move(next), options.relax);
+  return relax_boxes(problem, std::move(next), options.relax);
+}
+
+/// One stage: cut, relax, dissolve what no longer pays. Where no cut pays by itself, several
+/// together may: then all clusters are cut, some times over, before the result is judged.
+BoxClustering next_stage(const BoxProblem& problem, const BoxClustering& clustering,
+                         const BoxGrowthOptions& options) {
+  BoxClustering next = cut_and_relaxed(problem, clustering, options, options.least_cut_gain);
+  for (int leap = 0; leap < options.leaps && !(next.cost < clustering.cost); ++leap)
+    next = cut_and_relaxed(problem, next, options, -std::numeric_limits<double>::infinity());
   const std::uint32_t before = next.cluster_count();
+  if (before == clustering.cluster_count()) return clustering;
   next = dissolve_clusters(problem, std::move(next));
   if (next.cluster_count() < before) next = relax_boxes(problem, std::move(next), options.relax);
   return next;

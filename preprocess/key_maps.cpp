@@ -70,16 +70,20 @@ std::vector<double> cluster_areas(const ClusterMembers& members, std::span<const
   return areas;
 }
 
+std::vector<double> areas_at_all_times(const PoseSequence& sequence, const ClusterMembers& members,
+                                       std::span<const Affine3f> maps,
+                                       std::span<const double> model_areas) {
+  const Segment all{0, sequence.key_count() - 1};
+  return cluster_areas(members, maps, fuzzy_boxes(sequence, members, maps, all), model_areas);
+}
+
 /// Puts the refined maps of those clusters in place that they make cheaper at all times.
 void accept_better(const PoseSequence& sequence, const ClusterMembers& members,
                    std::span<const Affine3f> refined, std::span<const double> model_areas,
                    KeyMaps& plain) {
-  const Segment all{0, sequence.key_count() - 1};
-  const auto areas_under = [&](std::span<const Affine3f> maps) {
-    return cluster_areas(members, maps, fuzzy_boxes(sequence, members, maps, all), model_areas);
-  };
-  const std::vector<double> before = areas_under(plain.local_from_world);
-  const std::vector<double> after = areas_under(refined);
+  const std::vector<double> before =
+      areas_at_all_times(sequence, members, plain.local_from_world, model_areas);
+  const std::vector<double> after = areas_at_all_times(sequence, members, refined, model_areas);
   const std::size_t clusters = members.cluster_count();
   double sum_before = 0, sum_after = 0;
   for (std::size_t c = 0; c < clusters; ++c) {
@@ -90,6 +94,7 @@ void accept_better(const PoseSequence& sequence, const ClusterMembers& members,
       plain.local_from_world[key * clusters + c] = refined[key * clusters + c];
   }
   plain.refine_gain = sum_before > 0 ? 1 - sum_after / sum_before : 0;
+  plain.box_area = sum_after;
 }
 
 }  // namespace
@@ -124,7 +129,13 @@ KeyMaps fit_small_boxes(const PoseSequence& sequence, const ClusterMembers& memb
         });
   }
   report(0.7);
-  if (request.refine) accept_better(sequence, members, refined, measure.model_areas, plain);
+  if (request.refine) {
+    accept_better(sequence, members, refined, measure.model_areas, plain);
+  } else {
+    for (const double a :
+         areas_at_all_times(sequence, members, plain.local_from_world, measure.model_areas))
+      plain.box_area += a;
+  }
   return plain;
 }
 

@@ -18,6 +18,7 @@ struct ResidualStats {
 };
 
 struct KeyMaps {
+  double box_area = 0;  ///< of all fuzzy boxes at all times, mean share of the model's (cost.h)
   std::vector<Affine3f> local_from_world;  ///< F * K, key-major
   double refine_gain = 0;  ///< share by which refinement lowered the summed area of the fuzzy boxes
 };

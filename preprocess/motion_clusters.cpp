@@ -22,7 +22,7 @@ namespace {
 constexpr std::uint32_t kRoughKeys = 32, kRoughClusters = 32;
 constexpr std::size_t kWholeTriangles = 24'000;  // larger meshes are thinned to...
 constexpr std::size_t kThinTriangles = 6'000;    // ...so many, which rarely share vertices
-constexpr std::size_t kFineEntries = 1'000'000, kLeastFineKeys = 16;
+constexpr std::size_t kFineEntries = 500'000, kLeastFineKeys = 16;
 constexpr std::size_t kRestCandidates = 2;
 
 // The paper's way.
@@ -158,11 +158,13 @@ MotionClusters cluster_by_boxes(const PoseSequence& sequence, const DecomposeOpt
                                 double unit, ProgressSink& progress) {
   const VertexTriangles neighbors =
       make_vertex_triangles(sequence.triangles, sequence.vertex_count);
+  double furthest = 0.03;  // clusters can become fewer
   const auto on_step = [&](const BoxGrowthStep& s) {
-    progress.report("decompose", growth_share(s.clusters));
+    furthest = std::max(furthest, growth_share(s.clusters));
+    progress.report("decompose", furthest);
   };
   const PoseTable few = sampled_table(sequence, kRoughKeys, options.rest_key, unit);
-  progress.report("decompose", 0.03);
+  progress.report("decompose", furthest);
   RoughClusters rough = rough_clusters({few, sequence.triangles, neighbors}, options, on_step);
 
   const std::size_t affordable = kFineEntries / std::max(1u, sequence.vertex_count);
@@ -172,6 +174,7 @@ MotionClusters cluster_by_boxes(const PoseSequence& sequence, const DecomposeOpt
   const BoxProblem problem{mesh, {row_of_key(many, rough.rest_key), model_box_areas(many), {}, 1}};
   BoxGrowthOptions growth_options;
   growth_options.clusters = options.clusters;
+  growth_options.relax.max_rounds = 2;
   const BoxGrowth growth =
       grow_boxes(problem, std::move(rough.cluster_of_triangle), growth_options, on_step);
 

@@ -21,6 +21,7 @@ namespace {
 constexpr std::uint32_t kMaxClusters = 1024;
 constexpr double kDecomposedAt = 0.85;  // share of the whole job, for progress alone
 constexpr double kClusteredAt = 0.8, kMappedAt = 0.95;  // shares of the decomposition
+constexpr double kWildGrowth = 1.5;                     // of the boxes from keys to all times
 constexpr float kLargestCoordinate = 1e15f;  // areas and volumes must stay far inside float
 
 void check_positions(const PoseSequence& sequence) {
@@ -88,17 +89,6 @@ DecomposeStats make_stats(const MotionClusters& decision, const AssembledModel& 
   return stats;
 }
 
-MotionClusters decide_clusters(const PoseSequence& sequence, const DecomposeOptions& options,
-                               double unit, ProgressSink& progress) {
-  if (options.mode == DecomposeMode::kMotion)
-    return options.stop_percent ? cluster_by_residuals(sequence, options, unit, progress)
-                                : cluster_by_boxes(sequence, options, unit, progress);
-  MotionClusters one;
-  one.rest_key = options.rest_key.value_or(0);
-  one.cluster_of_triangle.assign(sequence.triangles.size(), 0);
-  return one;
-}
-
 KeyMaps decide_maps(const PoseSequence& sequence, const MotionClusters& decision,
                     const ClusterMembers& members, const DecomposeOptions& options,
                     ProgressSink& progress) {
@@ -111,6 +101,46 @@ KeyMaps decide_maps(const PoseSequence& sequence, const MotionClusters& decision
   });
 }
 
+/// A sequence taken apart.
+struct Decomposition {
+  MotionClusters clusters;
+  ClusterMembers members;
+  KeyMaps maps;
+};
+
+Decomposition with_maps(const PoseSequence& sequence, MotionClusters clusters,
+                        const DecomposeOptions& options, ProgressSink& progress) {
+  Decomposition result{std::move(clusters), {}, {}};
+  result.members = make_cluster_members(sequence.triangles, result.clusters.cluster_of_triangle,
+                                        result.clusters.cluster_count, sequence.vertex_count);
+  result.maps = decide_maps(sequence, result.clusters, result.members, options, progress);
+  return result;
+}
+
+Decomposition decide(const PoseSequence& sequence, const DecomposeOptions& options, double unit,
+                     ProgressSink& progress) {
+  if (options.mode == DecomposeMode::kNone) {
+    MotionClusters one;
+    one.rest_key = options.rest_key.value_or(0);
+    one.cluster_of_triangle.assign(sequence.triangles.size(), 0);
+    return with_maps(sequence, std::move(one), options, progress);
+  }
+  if (options.stop_percent)
+    return with_maps(sequence, cluster_by_residuals(sequence, options, unit, progress), options,
+                     progress);
+  Decomposition result =
+      with_maps(sequence, cluster_by_boxes(sequence, options, unit, progress), options, progress);
+  // Growth sees keys only. Where motion between keys is so wild that boxes of all times are much
+  // larger, clusters of least residual motion, which are calmer, may be the better ones.
+  if (result.maps.box_area > kWildGrowth * result.clusters.steps.back().sah_cost) {
+    ProgressPart late(progress, kClusteredAt + (kMappedAt - kClusteredAt) * 0.7, kMappedAt);
+    Decomposition calm =
+        with_maps(sequence, cluster_by_residuals(sequence, options, unit, late), options, late);
+    if (calm.maps.box_area < result.maps.box_area) result = std::move(calm);
+  }
+  return result;
+}
+
 }  // namespace
 
 DecomposeResult decompose(PoseSequence sequence, const DecomposeOptions& options,
@@ -120,11 +150,10 @@ DecomposeResult decompose(PoseSequence sequence, const DecomposeOptions& options
   ProgressPart decomposing(progress, 0, kDecomposedAt);
   decomposing.report("decompose", 0);
   const double unit = pose_unit(sequence);
-  const MotionClusters decision = decide_clusters(sequence, options, unit, decomposing);
-  const ClusterMembers members =
-      make_cluster_members(sequence.triangles, decision.cluster_of_triangle, decision.cluster_count,
-                           sequence.vertex_count);
-  KeyMaps maps = decide_maps(sequence, decision, members, options, decomposing);
+  Decomposition decided = decide(sequence, options, unit, decomposing);
+  const MotionClusters& decision = decided.clusters;
+  const ClusterMembers& members = decided.members;
+  KeyMaps& maps = decided.maps;
   const ResidualStats residual =
       residual_stats(sequence, members, maps.local_from_world, decision.rest_key);
   decomposing.report("decompose", 0.95);

@@ -33,7 +33,7 @@ struct ClusteringStep {
   std::uint32_t clusters = 0;
   double residual_rms = 0;  ///< about the boxes' middles (with stop_percent: the rest pose),
                             ///< relative to the rest pose's diagonal
-  double sah_cost = 0;  ///< expected work per ray that meets the model (docs/method.md, cost)
+  double sah_cost = 0;      ///< expected work per ray that meets the model (docs/method.md, cost)
 };
 
 struct DecomposeStats {
