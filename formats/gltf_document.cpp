@@ -233,6 +233,7 @@ class Converter {
     for (std::size_t i = 0; i < model_.nodes.size(); ++i) {
       const tinygltf::Node& from = model_.nodes[i];
       Node node;
+      node.name = from.name;
       node.mesh = from.mesh;
       node.skin = from.skin;
       node.weights = from.weights;

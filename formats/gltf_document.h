@@ -59,6 +59,7 @@ struct Mesh {
 };
 
 struct Node {
+  std::string name;
   int parent = kNone;
   int mesh = kNone;
   int skin = kNone;

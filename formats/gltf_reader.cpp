@@ -146,6 +146,19 @@ void sample_keys(const Document& document, const RigPlan& plan,
   }
 }
 
+void simplify(const Document& document, const RigPlan& plan, const GltfOptions& options,
+              PoseSequence& sequence) {
+  const std::vector<std::uint32_t> kept =
+      simplify_rig(*sequence.rig, sequence.key_count(),
+                   options.skeleton ? AlikeBones::kKeep : AlikeBones::kJoin);
+  if (!options.skeleton) return;
+  Skeleton all = plan.skeleton(document);
+  std::vector<BoneBinding> bones;
+  for (const std::uint32_t bone : kept) bones.push_back(all.bones[bone]);
+  all.bones = std::move(bones);
+  sequence.skeleton = std::move(all);
+}
+
 bool is_finite(std::span<const Vec3f> positions) {
   bool finite = true;
   for (const Vec3f& p : positions)
@@ -186,7 +199,7 @@ GltfResult read(const std::string& path, const GltfOptions& options, ProgressSin
   lay_out_keys(document, clips, plan, sequence);
   sequence.rig = plan.shape();
   sample_keys(document, plan, clips, sequence, progress);
-  simplify_rig(*sequence.rig, sequence.key_count());
+  simplify(document, plan, options, sequence);
   weld_vertices(sequence, groups);
   decode_positions(sequence);
   check_finite(document, sequence);

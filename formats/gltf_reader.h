@@ -12,6 +12,7 @@ namespace mdk {
 struct GltfOptions {
   double fps = 30;                 ///< sampling rate, keys per second, in (0, 10000]
   std::vector<std::string> clips;  ///< names of the animations to read; empty: all
+  bool skeleton = false;           ///< keep what the rig's bones hang on; then no bones are joined
 };
 
 struct GltfResult {

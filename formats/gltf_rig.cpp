@@ -65,6 +65,50 @@ Rig RigPlan::shape() const {
   return rig;
 }
 
+std::vector<char> RigPlan::joint_nodes(const Document& document) const {
+  std::vector<char> is_joint(document.nodes.size(), 0);
+  const auto mark = [&](int node) {
+    for (; node != kNone && !is_joint[static_cast<std::size_t>(node)];
+         node = document.nodes[static_cast<std::size_t>(node)].parent)
+      is_joint[static_cast<std::size_t>(node)] = 1;
+  };
+  for (const auto& [node, bone] : node_bones_) mark(node);
+  for (const auto& [skin, first] : skin_bones_)
+    for (const int node : skins_[static_cast<std::size_t>(skin)].joints) mark(node);
+  return is_joint;
+}
+
+Skeleton RigPlan::skeleton(const Document& document) const {
+  const std::vector<char> is_joint = joint_nodes(document);
+  std::vector<std::uint32_t> joint_of(document.nodes.size(), kNoParent);
+  Skeleton skeleton;
+  for (const int number : document.node_order) {
+    const auto n = static_cast<std::size_t>(number);
+    if (!is_joint[n]) continue;
+    const Node& node = document.nodes[n];
+    Joint joint;
+    if (node.parent != kNone) joint.parent = joint_of[static_cast<std::size_t>(node.parent)];
+    joint.name_offset = static_cast<std::uint32_t>(skeleton.names.size());
+    joint.name_bytes = static_cast<std::uint32_t>(node.name.size());
+    skeleton.names.insert(skeleton.names.end(), node.name.begin(), node.name.end());
+    joint.parent_from_joint = to_float(
+        node.has_matrix ? node.matrix : compose(node.translation, node.rotation, {1, 1, 1}));
+    if (!node.has_matrix) joint.scale = to_float(node.scale);
+    joint_of[n] = static_cast<std::uint32_t>(skeleton.joints.size());
+    skeleton.joints.push_back(joint);
+  }
+  skeleton.bones.resize(bone_count_);
+  for (const auto& [node, bone] : node_bones_)
+    skeleton.bones[bone].joint = joint_of[static_cast<std::size_t>(node)];
+  for (const auto& [skin, first] : skin_bones_) {
+    const SkinBinding& binding = skins_[static_cast<std::size_t>(skin)];
+    for (std::size_t j = 0; j < binding.joints.size(); ++j)
+      skeleton.bones[first + j] = {joint_of[static_cast<std::size_t>(binding.joints[j])],
+                                   to_float(binding.joint_from_vertex[j])};
+  }
+  return skeleton;
+}
+
 void RigPlan::make_room(Rig& rig, std::size_t key_count) const {
   rig.bone_maps.resize(key_count * bone_count_);
   rig.target_weights.resize(key_count * targets_.size());

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "common/motion/rig.h"
+#include "common/motion/skeleton.h"
 #include "formats/gltf_pose.h"
 
 namespace mdk::gltf {
@@ -28,6 +29,9 @@ class RigPlan {
 
   /// The rig without poses: vertices, weights, offsets that are not zero.
   Rig shape() const;
+  /// What the bones hang on: the nodes they move with and the ancestors of those, as the file has
+  /// them at rest; no limits.
+  Skeleton skeleton(const Document& document) const;
   void make_room(Rig& rig, std::size_t key_count) const;
   /// Different keys may be set at the same time.
   void set_key(Rig& rig, std::size_t key, const NodePose& pose) const;
@@ -38,6 +42,8 @@ class RigPlan {
     std::size_t number = 0;
   };
 
+  /// Which nodes are joints.
+  std::vector<char> joint_nodes(const Document& document) const;
   void append_vertices(const Instance& instance, Rig& rig) const;
 
   std::span<const Instance> instances_;

@@ -72,6 +72,8 @@ static_assert(sizeof(Aabb) == 24 && sizeof(Affine3f) == 48 && sizeof(Vec3f) == 1
 static_assert(sizeof(Triangle) == 12 && sizeof(TexCoord) == 8 && sizeof(KdNode) == 8);
 static_assert(sizeof(Material) == 32 && offsetof(Material, texture) == 16);
 static_assert(sizeof(Texture) == 16 && offsetof(Texture, first_texel) == 8);
+static_assert(sizeof(Joint) == 80 && offsetof(Joint, parent_from_joint) == 16);
+static_assert(sizeof(BoneBinding) == 52 && sizeof(ClusterBone) == 52);
 static_assert(sizeof(Cluster) == 8 && sizeof(Segment) == 8);
 static_assert(sizeof(FuzzyTree) == 40 && offsetof(FuzzyTree, local_box) == 16);
 static_assert(sizeof(PoseKind) == 4 && sizeof(BoneWeight) == 8);
@@ -118,6 +120,10 @@ inline constexpr SectionKind kFirstWeight{fourcc("BWFI"), "first_weight"};
 inline constexpr SectionKind kBoneWeights{fourcc("BWGT"), "bone_weights"};
 inline constexpr SectionKind kFirstOffset{fourcc("MOFI"), "first_offset"};
 inline constexpr SectionKind kMorphOffsets{fourcc("MOFF"), "morph_offsets"};
+inline constexpr SectionKind kJoints{fourcc("JNTS"), "joints"};
+inline constexpr SectionKind kJointNames{fourcc("JNAM"), "joint_names"};
+inline constexpr SectionKind kBoneBindings{fourcc("BIND"), "bone_bindings"};
+inline constexpr SectionKind kClusterBones{fourcc("CBON"), "cluster_bones"};
 inline constexpr SectionKind kKeyPositions{fourcc("POSE"), "key_positions"};
 
 /// Calls visit(kind, span) for the lists of a model that stand in a section of their own and are
@@ -149,6 +155,10 @@ void for_each_array(ModelRef&& model, Visit&& visit) {
   visit(kBoneWeights, model.poses.rig.bone_weights);
   visit(kFirstOffset, model.poses.rig.first_offset);
   visit(kMorphOffsets, model.poses.rig.morph_offsets);
+  visit(kJoints, model.skeleton.joints);
+  visit(kJointNames, model.skeleton.names);
+  visit(kBoneBindings, model.skeleton.bones);
+  visit(kClusterBones, model.cluster_bones);
   visit(kKeyPositions, model.poses.key_positions);
 }
 

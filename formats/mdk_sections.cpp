@@ -28,7 +28,9 @@ constexpr SectionKind kKnownSections[] = {layout::kModel,           layout::kCli
                                           layout::kBoneMaps,        layout::kTargetWeights,
                                           layout::kBasePositions,   layout::kFirstWeight,
                                           layout::kBoneWeights,     layout::kFirstOffset,
-                                          layout::kMorphOffsets,    layout::kKeyPositions};
+                                          layout::kMorphOffsets,    layout::kJoints,
+                                          layout::kJointNames,      layout::kBoneBindings,
+                                          layout::kClusterBones,    layout::kKeyPositions};
 
 const SectionKind* find_kind(std::uint32_t id) {
   const auto found = std::find_if(std::begin(kKnownSections), std::end(kKnownSections),

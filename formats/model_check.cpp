@@ -9,6 +9,7 @@
 #include "common/structures/kd_tree.h"
 #include "formats/check_text.h"
 #include "formats/pose_check.h"
+#include "formats/skeleton_check.h"
 
 namespace mdk {
 namespace {
@@ -291,9 +292,10 @@ std::string check_textures(const Model& m) {
 }  // namespace
 
 std::string find_inconsistency(const Model& model) {
-  for (const auto check : {check_counts, check_scalars, check_clips, check_segments,
-                           check_triangles, check_clusters, check_tree_ranges, check_trees,
-                           check_boxes_and_maps, check_poses, check_materials, check_textures}) {
+  for (const auto check :
+       {check_counts, check_scalars, check_clips, check_segments, check_triangles, check_clusters,
+        check_tree_ranges, check_trees, check_boxes_and_maps, check_poses, check_skeleton,
+        check_materials, check_textures}) {
     if (std::string fault = check(model); !fault.empty()) return fault;
   }
   return {};

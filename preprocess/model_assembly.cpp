@@ -109,6 +109,7 @@ std::vector<std::uint32_t> cluster_order(const ClusterMembers& members,
 
 /// What takes less room: the rig, where there is one, or the positions it was decoded to.
 PoseStorage smallest_poses(PoseSequence& sequence) {
+  if (sequence.skeleton) return {PoseKind::kRig, {}, *std::move(sequence.rig)};
   if (!sequence.rig || sequence.rig->bytes() >= sequence.positions.size() * sizeof(Vec3f))
     return {PoseKind::kKeyPositions, std::move(sequence.positions), {}};
   return {PoseKind::kRig, {}, *std::move(sequence.rig)};
@@ -151,6 +152,8 @@ AssembledModel assemble_model(PoseSequence sequence, const ClusterMembers& membe
     const std::vector<Aabb> boxes = fuzzy_boxes(sequence, members, parts.local_from_world, segment);
     model.fuzzy_boxes.insert(model.fuzzy_boxes.end(), boxes.begin(), boxes.end());
   }
+  for (std::size_t t = 0; t < parts.pose_space_boxes.size(); ++t)
+    model.fuzzy_boxes[t].extend(parts.pose_space_boxes[t]);
   model.cluster_world_boxes = cluster_world_boxes(sequence, members);
   for (const Aabb& box : model.cluster_world_boxes) model.bounds.extend(box);
   model.clusters = cluster_ranges(members);
@@ -178,6 +181,8 @@ AssembledModel assemble_model(PoseSequence sequence, const ClusterMembers& membe
   model.clips = std::move(sequence.clips);
   model.key_times = std::move(sequence.key_times);
   model.poses = smallest_poses(sequence);
+  if (sequence.skeleton) model.skeleton = *std::move(sequence.skeleton);
+  model.cluster_bones = std::move(parts.cluster_bones);
   progress.report("build", 1);
   return result;
 }

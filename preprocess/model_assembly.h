@@ -16,6 +16,9 @@ struct ModelParts {
   std::vector<Affine3f> local_from_world;  ///< F * K, key-major
   std::vector<Segment> segments;
   std::uint32_t rest_key = 0;
+
+  std::vector<ClusterBone> cluster_bones;  ///< K where a pose space is bounded, else none
+  std::vector<Aabb> pose_space_boxes;      ///< T then, in the order of the clusters' triangles
 };
 
 struct AssembledModel {

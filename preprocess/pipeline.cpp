@@ -3,17 +3,22 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <numbers>
+#include <optional>
 #include <span>
 #include <utility>
 
 #include "common/base/error.h"
 #include "common/base/parallel.h"
 #include "common/base/stopwatch.h"
+#include "preprocess/bone_clusters.h"
+#include "preprocess/bone_maps.h"
 #include "preprocess/cluster_growth.h"
 #include "preprocess/key_maps.h"
 #include "preprocess/key_sampling.h"
 #include "preprocess/local_frame.h"
 #include "preprocess/model_assembly.h"
+#include "preprocess/pose_space.h"
 #include "preprocess/segments.h"
 
 namespace mdk {
@@ -26,6 +31,8 @@ constexpr float kLargestCoordinate = 1e15f;  // areas and volumes must stay far 
 constexpr std::size_t kGrowthEntries = 250'000;
 constexpr std::uint32_t kMinGrowthKeys = 10, kMaxGrowthKeys = 48;
 constexpr std::size_t kPolishEntries = 8'000'000;
+constexpr std::size_t kBoneEntries = 2'000'000;  // keys that bones are chosen on
+constexpr std::uint32_t kMaxBoneKeys = 200;
 constexpr LloydOptions kPolish = {.min_gain = 0.002, .max_rounds = 8};
 
 void check_positions(const PoseSequence& sequence) {
@@ -42,6 +49,23 @@ void check_positions(const PoseSequence& sequence) {
                     "the animation");
     }
   });
+}
+
+void check_bone_options(const PoseSequence& sequence, const DecomposeOptions& options) {
+  if (options.mode == DecomposeMode::kBones && !sequence.rig)
+    throw Error(ErrorCode::kBadInput,
+                "the animation has no bones, only positions: bake it with --decompose motion");
+  if (options.sampling == PoseSampling::kCycle) return;
+  if (options.mode != DecomposeMode::kBones)
+    throw Error(ErrorCode::kUsage, "--sampling pose-space needs --decompose bones");
+  if (!sequence.skeleton)
+    throw Error(ErrorCode::kBadInput,
+                "the animation has no skeleton to pose: bake it with --sampling cycle");
+  if (!(options.joint_limit_degrees >= 0 && options.joint_limit_degrees <= 180))
+    throw Error(ErrorCode::kUsage, "the joints' limit must be from 0 to 180 degrees");
+  if (options.segments > 1)
+    throw Error(ErrorCode::kUsage,
+                "a pose space has no time to be cut into segments: leave --segments out");
 }
 
 void check_input(const PoseSequence& sequence, const DecomposeOptions& options) {
@@ -61,6 +85,7 @@ void check_input(const PoseSequence& sequence, const DecomposeOptions& options) 
                                        std::to_string(most));
   if (options.stop_percent && !(*options.stop_percent >= 0 && *options.stop_percent < 100))
     throw Error(ErrorCode::kUsage, "the stop threshold must be a percentage from 0 to below 100");
+  check_bone_options(sequence, options);
   check_consistency(sequence);
   check_positions(sequence);
 }
@@ -99,7 +124,8 @@ struct Decision {
   std::uint32_t rest_key = 0;
   std::vector<std::uint32_t> cluster_of_triangle;
   std::uint32_t cluster_count = 1;
-  std::vector<Affine3d> local_from_rest;
+  std::vector<Affine3d> local_from_rest;   ///< K, of motion's clusters
+  std::vector<ClusterBone> cluster_bones;  ///< K, of bones' clusters
   std::vector<GrowthStep> steps;
   std::string stop_reason;
 };
@@ -140,8 +166,70 @@ Decision cluster_motion(const PoseSequence& sequence, const DecomposeOptions& op
                            sequence.vertex_count);
   const LocalFrames frames =
       choose_local_frames(many, members, polished.maps.maps, growth_options.cost);
-  return {many.keys[polished.rest_row], polished.cluster_of_triangle, polished.cluster_count,
-          frames.local_from_rest,       std::move(growth.steps),      growth.stop_reason};
+  return {many.keys[polished.rest_row], polished.cluster_of_triangle,
+          polished.cluster_count,       frames.local_from_rest,
+          {},                           std::move(growth.steps),
+          growth.stop_reason};
+}
+
+void set_limits(Skeleton& skeleton, double degrees) {
+  constexpr float kMost = std::numbers::pi_v<float>;
+  for (Joint& joint : skeleton.joints)
+    joint.limit = std::min(kMost, static_cast<float>(degrees * std::numbers::pi / 180));
+}
+
+PoseSpace pose_space_of(const PoseSequence& sequence) {
+  return {sequence.skeleton->view(), sequence.rig->view(), sequence.key_count()};
+}
+
+Decision cluster_bones(const PoseSequence& sequence, const DecomposeOptions& options, double unit) {
+  Decision decision;
+  decision.rest_key = options.rest_key.value_or(0);
+  decision.stop_reason = "bones";
+  const std::size_t affordable = kBoneEntries / std::max(1u, sequence.vertex_count);
+  const auto keys =
+      static_cast<std::uint32_t>(std::clamp<std::size_t>(affordable, kMinGrowthKeys, kMaxBoneKeys));
+  const PoseTable table = sampled_table(sequence, keys, decision.rest_key, unit);
+  std::optional<PoseSpace> space;
+  if (sequence.skeleton) space = pose_space_of(sequence);
+  BoneClusters clusters = assign_to_bones(sequence, table.keys, space ? &*space : nullptr);
+  decision.cluster_count = static_cast<std::uint32_t>(clusters.bones.size());
+  decision.cluster_of_triangle = std::move(clusters.cluster_of_triangle);
+  const ClusterMembers members =
+      make_cluster_members(sequence.triangles, decision.cluster_of_triangle, decision.cluster_count,
+                           sequence.vertex_count);
+  decision.cluster_bones = choose_bone_bases(sequence, table, members, clusters.bones);
+  return decision;
+}
+
+Decision decide(const PoseSequence& sequence, const DecomposeOptions& options, double unit,
+                ProgressSink& progress) {
+  switch (options.mode) {
+    case DecomposeMode::kMotion:
+      return cluster_motion(sequence, options, unit, progress);
+    case DecomposeMode::kBones:
+      return cluster_bones(sequence, options, unit);
+    case DecomposeMode::kNone:
+      break;
+  }
+  Decision decision;
+  decision.rest_key = options.rest_key.value_or(0);
+  decision.cluster_of_triangle.assign(sequence.triangles.size(), 0);
+  decision.stop_reason = "none";
+  return decision;
+}
+
+KeyMaps key_maps(const PoseSequence& sequence, const ClusterMembers& members,
+                 const Decision& decision, DecomposeMode mode, double unit) {
+  switch (mode) {
+    case DecomposeMode::kMotion:
+      return fit_key_maps(sequence, members, decision.rest_key, decision.local_from_rest, unit);
+    case DecomposeMode::kBones:
+      return bone_key_maps(sequence, members, decision.cluster_bones, decision.rest_key);
+    case DecomposeMode::kNone:
+      break;
+  }
+  return identity_key_maps(sequence, members, decision.rest_key);
 }
 
 std::vector<std::string> segment_notes(const DecomposeOptions& options, std::size_t segments) {
@@ -180,25 +268,29 @@ DecomposeResult decompose(PoseSequence sequence, const DecomposeOptions& options
   Stopwatch watch;
   progress.report("decompose", 0);
   const double unit = pose_unit(sequence);
-  const bool motion = options.mode == DecomposeMode::kMotion;
-  Decision decision;
-  if (motion) {
-    decision = cluster_motion(sequence, options, unit, progress);
+  if (options.sampling == PoseSampling::kPoseSpace) {
+    set_limits(*sequence.skeleton, options.joint_limit_degrees);
   } else {
-    decision.rest_key = options.rest_key.value_or(0);
-    decision.cluster_of_triangle.assign(sequence.triangles.size(), 0);
-    decision.stop_reason = "none";
+    sequence.skeleton.reset();
   }
+  const Decision decision = decide(sequence, options, unit, progress);
   const ClusterMembers members =
       make_cluster_members(sequence.triangles, decision.cluster_of_triangle, decision.cluster_count,
                            sequence.vertex_count);
-  KeyMaps maps =
-      motion ? fit_key_maps(sequence, members, decision.rest_key, decision.local_from_rest, unit)
-             : identity_key_maps(sequence, members, decision.rest_key);
-  ModelParts parts{std::move(maps.local_from_world), {}, decision.rest_key};
+  KeyMaps maps = key_maps(sequence, members, decision, options.mode, unit);
+  ModelParts parts;
+  parts.local_from_world = std::move(maps.local_from_world);
+  parts.rest_key = decision.rest_key;
   progress.report("decompose", 0.95);
-  parts.segments =
-      choose_segments(sequence, members, parts.local_from_world, {.count = options.segments});
+  if (sequence.skeleton) {
+    parts.segments = {{0, sequence.key_count() - 1}};  // a pose space has no time
+    parts.cluster_bones = decision.cluster_bones;
+    parts.pose_space_boxes =
+        pose_space_boxes(pose_space_of(sequence), members, decision.cluster_bones);
+  } else {
+    parts.segments =
+        choose_segments(sequence, members, parts.local_from_world, {.count = options.segments});
+  }
   progress.report("decompose", 1);
   const double decompose_seconds = watch.lap();
 

@@ -14,12 +14,21 @@ namespace mdk {
 
 enum class DecomposeMode {
   kMotion,  ///< clusters of triangles that move alike (GFW06 §3.1)
+  kBones,   ///< a cluster for each bone of the rig (preprocess/bone_clusters.h)
   kNone,    ///< one cluster with identity maps: fuzzy boxes in world space
+};
+
+/// The poses that the boxes of bones hold for.
+enum class PoseSampling {
+  kCycle,      ///< those of the clips
+  kPoseSpace,  ///< and each in which no joint is turned past its limit
 };
 
 struct DecomposeOptions {
   DecomposeMode mode = DecomposeMode::kMotion;
-  std::uint32_t clusters = 0;          ///< exactly so many; 0: as many as pay
+  PoseSampling sampling = PoseSampling::kCycle;  ///< with kBones only
+  double joint_limit_degrees = 90;               ///< with kPoseSpace only; in [0, 180]
+  std::uint32_t clusters = 0;                    ///< exactly so many; 0: as many as pay
   std::optional<double> stop_percent;  ///< GFW06's rule: stop when a cluster lowers the residual by
                                        ///< less than this; without it the cost decides
   std::optional<std::uint32_t> rest_key;  ///< fixed rest pose; none: searched
@@ -36,7 +45,7 @@ struct ClusteringStep {
 
 struct DecomposeStats {
   std::uint32_t rest_key = 0;
-  std::string stop_reason;  ///< one of: "cost", "percent", "count", "limit", "none"
+  std::string stop_reason;  ///< one of: "cost", "percent", "count", "limit", "bones", "none"
   double residual_rms = 0;  ///< over all keys, relative to the rest pose's diagonal
   double residual_max = 0;
   double sah_cost = 0;

@@ -20,6 +20,8 @@ Model ModelStorage::view() const {
   model.clusters = clusters;
   model.local_from_world = local_from_world;
   model.cluster_world_boxes = cluster_world_boxes;
+  model.skeleton = skeleton.view();
+  model.cluster_bones = cluster_bones;
   model.segments = segments;
   model.fuzzy_trees = fuzzy_trees;
   model.fuzzy_boxes = fuzzy_boxes;

@@ -47,6 +47,14 @@ struct FuzzyTree {
   Aabb local_box;  ///< holds the fuzzy boxes of the cluster in the segment
 };
 
+/// The bone that a cluster follows: local_from_world = local_from_base * bone⁻¹. 52 bytes, as the
+/// file holds it.
+struct ClusterBone {
+  std::uint32_t bone = 0;
+  Affine3f local_from_base;
+};
+static_assert(sizeof(ClusterBone) == 52);
+
 /// F keys, V vertices, T triangles, K clusters, S segments.
 struct Model {
   std::uint32_t vertex_count = 0;
@@ -57,6 +65,10 @@ struct Model {
   std::span<const Clip> clips;
   std::span<const double> key_times;  ///< F
   PoseSource poses;
+
+  /// Of models whose boxes hold in every pose within the joints' limits; else both are empty.
+  SkeletonView skeleton;
+  std::span<const ClusterBone> cluster_bones;  ///< K
 
   std::span<const Triangle> triangles;              ///< T, sorted by cluster
   std::span<const std::uint32_t> source_triangles;  ///< T: the triangle's number in the input
@@ -121,6 +133,8 @@ struct ModelStorage {
   std::vector<Clip> clips;
   std::vector<double> key_times;
   PoseStorage poses;
+  Skeleton skeleton;
+  std::vector<ClusterBone> cluster_bones;
   std::vector<Triangle> triangles;
   std::vector<std::uint32_t> source_triangles;
   std::vector<Cluster> clusters;

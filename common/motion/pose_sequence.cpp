@@ -127,6 +127,10 @@ void check_consistency(const PoseSequence& sequence) {
     for (std::uint32_t v : t.v)
       require(v < sequence.vertex_count, "has a triangle with a vertex it does not have");
   check_appearance(sequence);
+  if (sequence.skeleton)
+    require(sequence.rig && sequence.rig->bone_maps.size() ==
+                                sequence.key_times.size() * sequence.skeleton->bones.size(),
+            "has a skeleton with other bones than its rig");
 }
 
 }  // namespace mdk

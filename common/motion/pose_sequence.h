@@ -12,6 +12,7 @@
 #include "common/math/vec3.h"
 #include "common/motion/appearance.h"
 #include "common/motion/rig.h"
+#include "common/motion/skeleton.h"
 
 namespace mdk {
 
@@ -38,6 +39,7 @@ struct PoseSequence {
   std::vector<double> key_times;  ///< per key: seconds from its clip's start, rising within a clip
   std::vector<Vec3f> positions;   ///< key-major: vertex i at key k stands at k * vertex_count + i
   std::optional<Rig> rig;         ///< what the positions were decoded from, bit for bit
+  std::optional<Skeleton> skeleton;  ///< what the rig's bones hang on
   Appearance appearance;
 
   std::uint32_t key_count() const { return static_cast<std::uint32_t>(key_times.size()); }

@@ -2,7 +2,9 @@
 
 #include <limits>
 
+#include "common/base/error.h"
 #include "common/base/parallel.h"
+#include "common/math/affine_path.h"
 
 namespace mdk {
 namespace {
@@ -42,6 +44,7 @@ std::span<const Vec3f> PosedMesh::key_pose(std::uint32_t key, std::uint32_t kept
 
 void PosedMesh::set_time(const KeyInterval& at) {
   at_ = at;
+  live_clusters_.clear();
   const std::span<const Vec3f> from = key_pose(at.key0, at.key1);
   if (at.s == 0.0f || at.key0 == at.key1) {
     positions_ = from;
@@ -53,6 +56,47 @@ void PosedMesh::set_time(const KeyInterval& at) {
     for (std::size_t i = begin; i < end; ++i) between_[i] = from[i] + (to[i] - from[i]) * at.s;
   });
   positions_ = between_;
+}
+
+void PosedMesh::set_pose(const SkeletonPose& pose) {
+  const Model& m = *model_;
+  const std::size_t targets = m.poses.rig.target_weights.size() / m.key_count();
+  if (m.skeleton.joints.empty())
+    throw Error(ErrorCode::kUsage,
+                "the model has no skeleton to pose: bake it with --decompose bones --sampling "
+                "pose-space");
+  if (pose.turns.size() != m.skeleton.joints.size() || pose.target_weights.size() != targets)
+    throw Error(ErrorCode::kUsage, "the pose belongs to another skeleton");
+  const std::vector<Affine3f> bones = bone_maps(m.skeleton, pose);
+  between_.resize(m.vertex_count);
+  parallel_chunks(between_.size(), kDecodedPerChunk, [&](std::size_t begin, std::size_t end) {
+    const VertexRange range{static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end)};
+    pose_vertices(m.poses.rig, {bones, pose.target_weights}, range,
+                  std::span(between_).subspan(begin, end - begin));
+  });
+  positions_ = between_;
+  live_clusters_.resize(m.clusters.size());
+  parallel_chunks(live_clusters_.size(), 4, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t c = begin; c < end; ++c) {
+      const ClusterBone& follows = m.cluster_bones[c];
+      Aabb box;
+      for (const Triangle& triangle :
+           m.triangles.subspan(m.clusters[c].first_triangle, m.clusters[c].triangle_count))
+        for (const std::uint32_t v : triangle.v) box.extend(between_[v]);
+      live_clusters_[c] = {
+          to_double(follows.local_from_base) * inverse(to_double(bones[follows.bone])),
+          is_usable(box) ? box : kNowhere};
+    }
+  });
+}
+
+Affine3d PosedMesh::cluster_map(std::uint32_t c) const {
+  if (is_live()) return live_clusters_[c].local_from_world;
+  return interpolate(model_->key_maps(at_.key0)[c], model_->key_maps(at_.key1)[c], at_.s);
+}
+
+Aabb PosedMesh::cluster_box(std::uint32_t c) const {
+  return is_live() ? live_clusters_[c].box : cluster_world_box(*model_, c, at_);
 }
 
 Aabb cluster_world_box(const Model& model, std::uint32_t c, const KeyInterval& at) {

@@ -1,4 +1,4 @@
-// PosedMesh: a model's vertices at one moment.
+// PosedMesh: a model's vertices and clusters at one moment, or as its skeleton is posed by hand.
 #pragma once
 
 #include <cstdint>
@@ -21,14 +21,32 @@ class PosedMesh {
   /// decoding it. Runs in parallel.
   void set_time(const KeyInterval& at);
 
+  /// Poses the skeleton, until the next set_time(). Boxes hold where no joint is past its limit
+  /// (joint_past_limit) and morph weights stay between the least and the largest of the keys.
+  /// Throws Error (kUsage) where the model has no skeleton, or another than the pose. Cost:
+  /// O(vertices + triangles). Runs in parallel.
+  void set_pose(const SkeletonPose& pose);
+
   const Model& model() const { return *model_; }
+  /// The last moment; what is_live() is not at a moment.
   const KeyInterval& at() const { return at_; }
+  bool is_live() const { return !live_clusters_.empty(); }
   std::span<const Vec3f> positions() const { return positions_; }
+
+  /// local_from_world of cluster `c` now.
+  Affine3d cluster_map(std::uint32_t c) const;
+  /// World box of cluster `c` now: holds all its vertices.
+  Aabb cluster_box(std::uint32_t c) const;
 
  private:
   struct DecodedKey {
     std::optional<std::uint32_t> key;
     std::vector<Vec3f> positions;
+  };
+
+  struct LiveCluster {
+    Affine3d local_from_world;
+    Aabb box;
   };
 
   /// The pose at a key; what `kept` names stays decoded.
@@ -39,6 +57,7 @@ class PosedMesh {
   std::span<const Vec3f> positions_;
   DecodedKey decoded_[2];
   std::vector<Vec3f> between_;
+  std::vector<LiveCluster> live_clusters_;  ///< K while posed by hand, else none
 };
 
 /// World box of cluster `c` at a moment: holds all its vertices. Linear between keys, which bounds

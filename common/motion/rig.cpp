@@ -159,13 +159,15 @@ std::vector<T> select_columns(std::span<const T> table, std::size_t width,
   return selected;
 }
 
-void drop_unused_bones(Rig& rig, std::size_t bones, std::uint32_t keys) {
+/// Returns the old numbers of those that are left.
+std::vector<std::uint32_t> drop_unused_bones(Rig& rig, std::size_t bones, std::uint32_t keys) {
   std::vector<char> used(bones, 0);
   for (const BoneWeight& w : rig.bone_weights) used[w.bone] = 1;
-  const Renumbering renumbering(used);
+  Renumbering renumbering(used);
   for (BoneWeight& w : rig.bone_weights) w.bone = renumbering.number[w.bone];
   rig.bone_maps =
       select_columns(std::span<const Affine3f>(rig.bone_maps), bones, renumbering.kept, keys);
+  return std::move(renumbering.kept);
 }
 
 void drop_idle_targets(Rig& rig, std::size_t targets, std::uint32_t keys) {
@@ -238,12 +240,15 @@ Rig select_vertices(const Rig& rig, std::span<const std::uint32_t> kept) {
   return to;
 }
 
-void simplify_rig(Rig& rig, std::uint32_t key_count) {
+std::vector<std::uint32_t> simplify_rig(Rig& rig, std::uint32_t key_count, AlikeBones alike) {
   const std::size_t bones = rig.bone_maps.size() / key_count;
   const std::size_t targets = rig.target_weights.size() / key_count;
-  merge_bone_weights(rig, lowest_alike_bones(rig.bone_maps, bones));
-  drop_unused_bones(rig, bones, key_count);
+  std::vector<std::uint32_t> stands_for(bones);
+  std::iota(stands_for.begin(), stands_for.end(), 0u);
+  if (alike == AlikeBones::kJoin) stands_for = lowest_alike_bones(rig.bone_maps, bones);
+  merge_bone_weights(rig, stands_for);
   drop_idle_targets(rig, targets, key_count);
+  return drop_unused_bones(rig, bones, key_count);
 }
 
 std::vector<std::uint32_t> lowest_alike_vertices(const Rig& rig,

@@ -85,10 +85,16 @@ void pose_vertices(const RigView& rig, const RigPose& pose, VertexRange range,
 /// The rig of the vertices `kept`, in that order.
 Rig select_vertices(const Rig& rig, std::span<const std::uint32_t> kept);
 
-/// Joins bones that are alike at every key, drops bones and morph targets that move no vertex, puts
-/// each vertex's weights in bone order and one per bone. Positions change by rounding at most.
-/// Cost: O(F * J log J + weights + offsets).
-void simplify_rig(Rig& rig, std::uint32_t key_count);
+enum class AlikeBones {
+  kJoin,  ///< bones that are alike at every key become one
+  kKeep,  ///< since in other poses they may not be alike
+};
+
+/// Joins alike bones or keeps them, drops bones and morph targets that move no vertex, puts each
+/// vertex's weights in bone order and one per bone. Positions change by rounding at most. Returns
+/// the old numbers of the bones that are left. Cost: O(F * J log J + weights + offsets).
+std::vector<std::uint32_t> simplify_rig(Rig& rig, std::uint32_t key_count,
+                                        AlikeBones alike = AlikeBones::kJoin);
 
 /// Per vertex the lowest vertex that is computed from the same numbers and has the same group.
 /// `groups`: one per vertex, or empty for "all alike". Cost: O(V log V).

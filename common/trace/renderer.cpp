@@ -67,7 +67,11 @@ const FrameStats& Renderer::trace(const FrameRequest& request) {
   s.stats.rays = static_cast<std::uint64_t>(request.width) * request.height;
 
   Stopwatch watch;
-  s.mesh.set_time(request.at);
+  if (request.pose != nullptr) {
+    s.mesh.set_pose(*request.pose);
+  } else {
+    s.mesh.set_time(request.at);
+  }
   s.stats.pose_ms = watch.lap() * 1e3;
   s.technique->prebuild(s.mesh);
   s.stats.prebuild_ms = watch.lap() * 1e3;

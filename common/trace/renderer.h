@@ -24,6 +24,7 @@ struct FrameRequest {
   std::uint32_t width = 512, height = 512;  ///< 1 to kMaxImageSide each
   ShadingMode shading = ShadingMode::kDiffuse;
   Counting counting = Counting::kOff;  ///< counts cost time: never time a counting frame
+  const SkeletonPose* pose = nullptr;  ///< where there is one, it counts instead of `at`
 };
 
 /// Not for use from several threads at once; uses many inside. The model must outlive it.

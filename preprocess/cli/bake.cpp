@@ -32,6 +32,8 @@ struct BakeArguments {
   std::string output, report, depfile;
   SourceOptions source;
   std::string mode = "motion";
+  std::string sampling = "cycle";
+  std::string joint_limit = "90";
   std::string clusters = "auto";
   std::string stop = "cost";
   std::string rest_pose = "auto";
@@ -40,12 +42,34 @@ struct BakeArguments {
   MessageOptions messages;
 };
 
+void parse_bone_options(const BakeArguments& arguments, DecomposeOptions& options) {
+  if (arguments.sampling == "pose-space") {
+    options.sampling = PoseSampling::kPoseSpace;
+    if (options.mode != DecomposeMode::kBones)
+      throw Error(ErrorCode::kUsage, "--sampling pose-space needs --decompose bones");
+    if (options.segments > 1)
+      throw Error(ErrorCode::kUsage,
+                  "--segments " + arguments.segments +
+                      ": a pose space has no time to be cut; leave --segments out");
+  } else if (arguments.sampling != "cycle") {
+    throw Error(ErrorCode::kUsage,
+                "--sampling " + arguments.sampling + ": expected cycle or pose-space");
+  }
+  options.joint_limit_degrees = parse_real("--joint-limit", arguments.joint_limit);
+  if (!(options.joint_limit_degrees >= 0 && options.joint_limit_degrees <= 180))
+    throw Error(ErrorCode::kUsage,
+                "--joint-limit " + arguments.joint_limit + ": expected degrees from 0 to 180");
+}
+
 DecomposeOptions parse_decompose_options(const BakeArguments& arguments) {
   DecomposeOptions options;
   if (arguments.mode == "none") {
     options.mode = DecomposeMode::kNone;
+  } else if (arguments.mode == "bones") {
+    options.mode = DecomposeMode::kBones;
   } else if (arguments.mode != "motion") {
-    throw Error(ErrorCode::kUsage, "--decompose " + arguments.mode + ": expected motion or none");
+    throw Error(ErrorCode::kUsage,
+                "--decompose " + arguments.mode + ": expected motion, bones or none");
   }
   if (arguments.clusters != "auto")
     options.clusters = parse_count("--clusters", arguments.clusters, {});
@@ -60,12 +84,16 @@ DecomposeOptions parse_decompose_options(const BakeArguments& arguments) {
   if (arguments.segments != "auto")
     options.segments = parse_count("--segments", arguments.segments, {});
 
+  parse_bone_options(arguments, options);
   if (options.clusters > 0 && options.stop_percent)
     throw Error(ErrorCode::kUsage,
                 "--clusters N and --stop PCT contradict each other; give one of them");
   if (options.mode == DecomposeMode::kNone && (options.clusters > 1 || options.stop_percent))
     throw Error(ErrorCode::kUsage,
                 "--decompose none makes one cluster; leave --clusters and --stop out");
+  if (options.mode == DecomposeMode::kBones && (options.clusters > 0 || options.stop_percent))
+    throw Error(ErrorCode::kUsage,
+                "--decompose bones makes a cluster for each bone; leave --clusters and --stop out");
   return options;
 }
 
@@ -120,7 +148,9 @@ void run_bake(const BakeArguments& arguments) {
   BakeOutcome outcome{joined_inputs(arguments), arguments.output, {}, 0, 0};
   Stopwatch total, stage;
   ProgressPart reading(progress, 0, kReadUntil);
-  GltfResult source = read_source(arguments.inputs, arguments.source, reading);
+  SourceOptions reading_options = arguments.source;
+  reading_options.skeleton = options.sampling == PoseSampling::kPoseSpace;
+  GltfResult source = read_source(arguments.inputs, reading_options, reading);
   outcome.seconds.read = stage.lap();
 
   ProgressPart decomposing(progress, kReadUntil, kDecomposeUntil);
@@ -150,9 +180,20 @@ void run_bake(const BakeArguments& arguments) {
 void add_decompose_options(CLI::App& command, BakeArguments& arguments) {
   command
       .add_option("--decompose", arguments.mode,
-                  "motion: clusters of triangles that move alike; none: one cluster that does\n"
-                  "not move (default: motion).")
-      ->type_name("motion|none");
+                  "motion: clusters of triangles that move alike; bones: a cluster for each bone\n"
+                  "or rigid part; none: one cluster that does not move (default: motion).")
+      ->type_name("motion|bones|none");
+  command
+      .add_option("--sampling", arguments.sampling,
+                  "What the boxes of bones hold for. cycle: the clips' poses; pose-space: each\n"
+                  "pose in which no joint is turned past its limit, too, so that the file can\n"
+                  "be posed by hand (default: cycle).")
+      ->type_name("cycle|pose-space");
+  command
+      .add_option("--joint-limit", arguments.joint_limit,
+                  "How far each joint may turn from its rest, in degrees, 0 to 180\n"
+                  "(default: 90).")
+      ->type_name("DEG");
   command
       .add_option("--clusters", arguments.clusters,
                   "How many clusters: as many as pay, or exactly N, at least 1 (default: auto).")

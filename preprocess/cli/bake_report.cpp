@@ -11,6 +11,7 @@ std::string stop_text(const std::string& reason) {
   if (reason == "cost") return "another would cost more than it saves";
   if (reason == "percent") return "another would gain less than the percentage";
   if (reason == "count") return "as many as asked for";
+  if (reason == "bones") return "those of bones that have triangles";
   if (reason == "limit") return "the most there may be";
   return "no decomposition";
 }

@@ -26,6 +26,7 @@ void add_source_options(CLI::App& command, SourceOptions& options) {
 
 GltfOptions parse_source_options(const SourceOptions& options) {
   GltfOptions parsed;
+  parsed.skeleton = options.skeleton;
   parsed.fps = parse_real("--fps", options.fps);
   if (!(parsed.fps > 0 && parsed.fps <= 10000))
     throw Error(ErrorCode::kUsage,

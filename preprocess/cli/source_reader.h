@@ -16,6 +16,7 @@ namespace mdk {
 struct SourceOptions {
   std::string clips = "all";
   std::string fps = "30";
+  bool skeleton = false;  ///< what GltfOptions::skeleton says; no option of the command line
 };
 void add_source_options(CLI::App& command, SourceOptions& options);
 

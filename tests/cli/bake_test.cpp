@@ -87,6 +87,12 @@ TEST_F(Bake, OptionsReachTheDecomposition) {
   EXPECT_EQ(report_with({"--stop", "50"})["stop_reason"], "percent");
   EXPECT_EQ(report_with({"--decompose", "none"})["clusters"], 1);
   EXPECT_EQ(report_with({"--decompose", "none"})["stop_reason"], "none");
+  const Json bones = report_with({"--decompose", "bones"});
+  EXPECT_EQ(bones["stop_reason"], "bones");
+  const Json posable = report_with({"--decompose", "bones", "--sampling", "pose-space"});
+  EXPECT_EQ(posable["segments"], 1);
+  EXPECT_GT(posable["sah_cost"], report_with({"--decompose", "bones", "--sampling", "pose-space",
+                                              "--joint-limit", "10"})["sah_cost"]);
   EXPECT_EQ(report_with({"--segments", "1"})["segments"], 1);
   EXPECT_EQ(report_with({"--segments", "5"})["segments"], 5);
   EXPECT_EQ(report_with({"--segments", "1000"})["segments"], kSampleKeys - 2);

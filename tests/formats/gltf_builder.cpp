@@ -81,7 +81,13 @@ std::string write_text(const TempFolder& folder, const std::string& name, const 
 
 GltfResult read_file(const std::string& path, double fps, const std::vector<std::string>& clips) {
   SilentProgress silent;
-  return read_gltf(path, {fps, clips}, silent);
+  return read_gltf(path, {.fps = fps, .clips = clips}, silent);
+}
+
+GltfResult read_built(const GltfBuilder& builder, const GltfOptions& options) {
+  const TempFolder folder;
+  SilentProgress silent;
+  return read_gltf(write_text(folder, "test.gltf", builder.json()), options, silent);
 }
 
 GltfResult read_built(const GltfBuilder& builder, double fps,

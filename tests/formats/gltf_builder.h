@@ -89,6 +89,7 @@ GltfResult read_file(const std::string& path, double fps = 30,
                      const std::vector<std::string>& clips = {});
 
 /// Writes what was built as "test.gltf" and reads it back.
+GltfResult read_built(const GltfBuilder& builder, const GltfOptions& options);
 GltfResult read_built(const GltfBuilder& builder, double fps = 30,
                       const std::vector<std::string>& clips = {});
 

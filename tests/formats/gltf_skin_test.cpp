@@ -183,5 +183,35 @@ TEST(GltfMorph, RefusesWeightsThatDoNotMatchTheTargets) {
   expect_refused(ErrorCode::kBadInput, {"node 0", "morph targets"}, [&] { read_built(b); });
 }
 
+TEST(GltfSkin, KeepsTheSkeletonThatItsBonesHangOnWhereItIsAskedFor) {
+  // Root 0 with joints 1 and 2 in a row; node 3 is no ancestor of anything shown; node 4 the mesh.
+  GltfBuilder b;
+  const int positions = b.accessor<float>("VEC3", {0, 0, 0, 1, 0, 0, 0, 1, 0});
+  b.add("nodes", R"({"name": "root", "children": [1], "rotation": [0, 0, 0.6, 0.8]})");
+  b.add("nodes", R"({"name": "arm", "children": [2], "translation": [1, 2, 3]})");
+  b.add("nodes", R"({"name": "hand", "scale": [2, 2, 2], "translation": [0, 1, 0]})");
+  b.add("nodes", R"({"name": "lamp"})");
+  b.add("nodes", R"({"mesh": 0, "skin": 0})");
+  const std::string sets =
+      Skinned::influences(0, b.accessor<std::uint8_t>("VEC4", {0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0}),
+                          b.accessor<float>("VEC4", {1, 0, 0, 0, 1, 0, 0, 0, 0.5f, 0.5f, 0, 0}));
+  b.mesh("\"POSITION\": " + std::to_string(positions) + sets);
+  b.add("skins", R"({"joints": [1, 2]})");
+  GltfOptions options;
+  EXPECT_FALSE(read_built(b, options).sequence.skeleton.has_value());
+  options.skeleton = true;
+  const PoseSequence sequence = read_built(b, options).sequence;
+  ASSERT_TRUE(sequence.skeleton.has_value());
+  const SkeletonView skeleton = sequence.skeleton->view();
+  std::vector<std::string> names;
+  for (const Joint& joint : skeleton.joints) names.emplace_back(skeleton.name(joint));
+  EXPECT_THAT(names, testing::UnorderedElementsAre("root", "arm", "hand", ""));
+  for (const Joint& joint : skeleton.joints)
+    if (skeleton.name(joint) == "hand") EXPECT_EQ(names[joint.parent], "arm");
+  const SkeletonPose rest{std::vector<Vec3d>(4), {}};
+  EXPECT_EQ(bone_maps(skeleton, rest), sequence.rig->bone_maps)
+      << "unturned, the bones are the file's";
+}
+
 }  // namespace
 }  // namespace mdk::test

@@ -39,6 +39,10 @@ ModelStorage copy_of(const Model& model) {
   copy_list(copy.clusters, model.clusters);
   copy_list(copy.local_from_world, model.local_from_world);
   copy_list(copy.cluster_world_boxes, model.cluster_world_boxes);
+  copy_list(copy.skeleton.joints, model.skeleton.joints);
+  copy_list(copy.skeleton.names, model.skeleton.names);
+  copy_list(copy.skeleton.bones, model.skeleton.bones);
+  copy_list(copy.cluster_bones, model.cluster_bones);
   copy_list(copy.segments, model.segments);
   copy_list(copy.fuzzy_trees, model.fuzzy_trees);
   copy_list(copy.fuzzy_boxes, model.fuzzy_boxes);

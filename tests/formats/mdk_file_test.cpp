@@ -141,7 +141,7 @@ TEST_F(MdkFileTest, HeaderIsAsSpecified) {
   const Bytes magic = {0x89, 'M', 'D', 'K', 0x0d, 0x0a, 0x1a, 0x0a, 4, 3, 2, 1, 2, 0, 0, 0};
   EXPECT_EQ(Bytes(bytes.begin(), bytes.begin() + 16), magic);
   EXPECT_EQ(get<std::uint64_t>(bytes, 16), bytes.size());
-  EXPECT_EQ(get<std::uint32_t>(bytes, 24), 28u);
+  EXPECT_EQ(get<std::uint32_t>(bytes, 24), 32u);
   EXPECT_THAT(Bytes(bytes.begin() + 28, bytes.begin() + 56), testing::Each(0));
   Bytes resealed = bytes;
   seal(resealed);
@@ -209,7 +209,7 @@ TEST_F(MdkFileTest, RecordsAreAsSpecified) {
 
 TEST_F(MdkFileTest, ListsItsSectionsByName) {
   const auto sections = MdkFile(written(sample_model())).sections();
-  ASSERT_EQ(sections.size(), 28u);
+  ASSERT_EQ(sections.size(), 32u);
   EXPECT_EQ(sections.front().name, "model");
   EXPECT_EQ(sections.front().bytes, 64u);
   EXPECT_EQ(sections.back().name, "key_positions");

@@ -132,4 +132,26 @@ ModelStorage sample_rig_model() {
   return model;
 }
 
+ModelStorage sample_skeleton_model() {
+  ModelStorage model = sample_rig_model();
+  model.segments = {{0, 2}};
+  model.fuzzy_trees.resize(2);
+  model.kd_nodes.resize(6);
+  model.kd_refs.resize(7);
+  model.fuzzy_boxes.resize(6);
+  Joint root, tip;
+  root.limit = 0.5f;
+  root.name_bytes = 3;
+  tip.parent = 0;
+  tip.limit = 1.5f;
+  tip.name_offset = 3;
+  tip.name_bytes = 4;
+  tip.parent_from_joint.m[1][3] = 1;
+  tip.scale = {2, 2, 2};
+  const std::string names = "hiptail";
+  model.skeleton = {{root, tip}, {names.begin(), names.end()}, {{0, {}}, {1, {}}, {1, {}}}};
+  model.cluster_bones = {{0, {}}, {2, {}}};
+  return model;
+}
+
 }  // namespace mdk::test

@@ -14,4 +14,7 @@ ModelStorage sample_model();
 /// positions. Only the list of key positions is empty.
 ModelStorage sample_rig_model();
 
+/// The one with a rig, in one segment, with a skeleton of two joints, "hip" and "tail".
+ModelStorage sample_skeleton_model();
+
 }  // namespace mdk::test

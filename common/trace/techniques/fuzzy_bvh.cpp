@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "common/base/parallel.h"
-#include "common/math/affine_path.h"
 #include "common/structures/top_level.h"
 #include "common/trace/techniques/makers.h"
 
@@ -49,7 +48,8 @@ class FuzzyBvhTechnique final : public Technique {
       : model_(model),
         segments_(model.segment_count()),
         views_(model.cluster_count()),
-        world_boxes_(model.cluster_count()) {}
+        world_boxes_(model.cluster_count()),
+        maps_(model.cluster_count()) {}
 
   void prebuild(const PosedMesh& mesh) override {
     const std::uint32_t segment = segment_of(model_, mesh.at());
@@ -58,20 +58,19 @@ class FuzzyBvhTechnique final : public Technique {
 
   void update(const PosedMesh& mesh) override {
     positions_ = mesh.positions().data();
-    at_ = mesh.at();
-    present_ = &segments_[segment_of(model_, at_)];
-    for (std::uint32_t c = 0; c < world_boxes_.size(); ++c)
-      world_boxes_[c] = cluster_world_box(model_, c, at_);
+    present_ = &segments_[segment_of(model_, mesh.at())];
+    for (std::uint32_t c = 0; c < world_boxes_.size(); ++c) {
+      world_boxes_[c] = mesh.cluster_box(c);
+      maps_[c] = mesh.cluster_map(c);
+    }
     build_top_level(world_boxes_, top_);
   }
 
   void set_view(const PinholeRays& rays) override {
-    const std::span<const Affine3f> from = model_.key_maps(at_.key0),
-                                    to = model_.key_maps(at_.key1);
     for (std::size_t c = 0; c < views_.size(); ++c) {
       const std::vector<WideBvhNode>& nodes = present_->trees[c].nodes;
       if (nodes.empty()) continue;
-      const FrustumBasis basis = make_frustum_basis(rays, interpolate(from[c], to[c], at_.s));
+      const FrustumBasis basis = make_frustum_basis(rays, maps_[c]);
       views_[c] = {nodes, present_->first_leaf[c], make_frustum_forms(basis, nodes[0].box())};
     }
     top_view_.nodes = top_.nodes;
@@ -96,11 +95,11 @@ class FuzzyBvhTechnique final : public Technique {
 
  private:
   const Model& model_;
-  KeyInterval at_;
   std::vector<SegmentTrees> segments_;  ///< built when first shown
   const SegmentTrees* present_ = nullptr;
   std::vector<BvhView> views_;  ///< by cluster
   std::vector<Aabb> world_boxes_;
+  std::vector<Affine3d> maps_;  ///< by cluster
   TopLevel top_;
   BvhView top_view_{};
   const Vec3f* positions_ = nullptr;

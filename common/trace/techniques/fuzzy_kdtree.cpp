@@ -3,7 +3,6 @@
 // rays. Where the time line has segments, the present one's trees are swapped in.
 #include <vector>
 
-#include "common/math/affine_path.h"
 #include "common/structures/kd_tree_builder.h"
 #include "common/trace/techniques/makers.h"
 
@@ -13,25 +12,27 @@ namespace {
 class FuzzyKdTechnique final : public Technique {
  public:
   explicit FuzzyKdTechnique(const Model& model)
-      : model_(model), world_boxes_(model.cluster_count()), clusters_(model.cluster_count()) {}
+      : model_(model),
+        world_boxes_(model.cluster_count()),
+        maps_(model.cluster_count()),
+        clusters_(model.cluster_count()) {}
 
   void update(const PosedMesh& mesh) override {
     soup_ = soup_of(mesh);
-    at_ = mesh.at();
-    for (std::uint32_t c = 0; c < world_boxes_.size(); ++c)
-      world_boxes_[c] = cluster_world_box(model_, c, at_);
+    for (std::uint32_t c = 0; c < world_boxes_.size(); ++c) {
+      world_boxes_[c] = mesh.cluster_box(c);
+      maps_[c] = mesh.cluster_map(c);
+    }
     top_ = build_kd_tree(world_boxes_);
-    const std::span<const FuzzyTree> trees = model_.segment_trees(segment_of(model_, at_));
+    const std::span<const FuzzyTree> trees = model_.segment_trees(segment_of(model_, mesh.at()));
     for (std::size_t c = 0; c < clusters_.size(); ++c)
       clusters_[c].tree = model_.tree_view(trees[c]);
   }
 
   void set_view(const PinholeRays& rays) override {
-    const std::span<const Affine3f> from = model_.key_maps(at_.key0),
-                                    to = model_.key_maps(at_.key1);
     for (std::size_t c = 0; c < clusters_.size(); ++c)
-      clusters_[c].forms = make_frustum_forms(
-          make_frustum_basis(rays, interpolate(from[c], to[c], at_.s)), clusters_[c].tree.bounds);
+      clusters_[c].forms =
+          make_frustum_forms(make_frustum_basis(rays, maps_[c]), clusters_[c].tree.bounds);
     top_view_ = {top_.view(), make_frustum_forms(make_frustum_basis(rays), top_.bounds)};
   }
 
@@ -48,9 +49,9 @@ class FuzzyKdTechnique final : public Technique {
 
  private:
   const Model& model_;
-  KeyInterval at_;
   TriangleSoup soup_{};
   std::vector<Aabb> world_boxes_;
+  std::vector<Affine3d> maps_;
   KdTree top_;
   KdView top_view_;
   std::vector<KdView> clusters_;

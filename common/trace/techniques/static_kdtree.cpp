@@ -14,20 +14,18 @@ namespace {
 class StaticKdTechnique final : public Technique {
  public:
   void prebuild(const PosedMesh& mesh) override {
-    const KeyInterval& at = mesh.at();
-    std::map<Moment, KdTree>& trees = at.s == 0.0f ? at_keys_ : between_keys_;
-    const Moment moment{at.key0, at.key1, at.s};
-    if (trees.contains(moment)) return;
-    if (at.s != 0.0f) between_keys_.clear();  // only the present one: their number has no end
+    const bool passing = is_passing(mesh);
+    std::map<Moment, KdTree>& trees = passing ? between_keys_ : at_keys_;
+    const Moment moment = moment_of(mesh);
+    if (trees.contains(moment) && !mesh.is_live()) return;
+    if (passing) between_keys_.clear();  // only the present one: their number has no end
     std::vector<Aabb> boxes(mesh.model().triangle_count());
     triangle_boxes(mesh, boxes);
     trees.emplace(moment, build_kd_tree(boxes));
   }
   void update(const PosedMesh& mesh) override {
     soup_ = soup_of(mesh);
-    const KeyInterval& at = mesh.at();
-    const std::map<Moment, KdTree>& trees = at.s == 0.0f ? at_keys_ : between_keys_;
-    present_.tree = trees.at({at.key0, at.key1, at.s}).view();
+    present_.tree = (is_passing(mesh) ? between_keys_ : at_keys_).at(moment_of(mesh)).view();
   }
   void set_view(const PinholeRays& rays) override {
     present_.forms = make_frustum_forms(make_frustum_basis(rays), present_.tree.bounds);
@@ -45,6 +43,12 @@ class StaticKdTechnique final : public Technique {
 
  private:
   using Moment = std::tuple<std::uint32_t, std::uint32_t, float>;
+
+  /// Between keys, or posed by hand.
+  static bool is_passing(const PosedMesh& mesh) { return mesh.is_live() || mesh.at().s != 0.0f; }
+  static Moment moment_of(const PosedMesh& mesh) {
+    return {mesh.at().key0, mesh.at().key1, mesh.at().s};
+  }
 
   TriangleSoup soup_{};
   std::map<Moment, KdTree> at_keys_, between_keys_;
