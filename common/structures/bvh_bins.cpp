@@ -5,13 +5,15 @@
 
 namespace mdk {
 
-Binning::Binning(const QuadBox& centroids, int bins) : lo_(centroids.lo) {
-  last_ = Quad::filled(static_cast<float>(bins - 1));
-  for (std::size_t k = 0; k < 4; ++k) {
-    // Where the range is a point, or too short or too long to be scaled, all fall into bin 0.
-    const float scale = static_cast<float>(bins) / (centroids.hi.v[k] - centroids.lo.v[k]);
-    scale_.v[k] = k < 3 && std::isfinite(scale) ? scale : 0.0f;
-  }
+Binning::Binning(const QuadBox& centroids, int bins)
+    : lo_(centroids.lo), last_(Quad::filled(static_cast<float>(bins - 1))) {
+  // Where the range is a point, or too short or too long to be scaled, all fall into bin 0.
+  const auto scale = [&](float lo, float hi) {
+    const float per_length = static_cast<float>(bins) / (hi - lo);
+    return std::isfinite(per_length) ? per_length : 0.0f;
+  };
+  for (std::size_t k = 0; k < 3; ++k) scale_.v[k] = scale(centroids.lo.v[k], centroids.hi.v[k]);
+  scale_.v[3] = 0;
 }
 
 void Bins::clear(int bins) {

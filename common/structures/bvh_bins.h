@@ -20,20 +20,24 @@ inline constexpr int kMaxBins = 1024;
 struct alignas(16) Quad {
   float v[4];
 
-  static Quad filled(float x) { return {{x, x, x, x}}; }
+  static Quad filled(float a) { return {{a, a, a, a}}; }
 };
 
 inline float least(float a, float b) { return a < b ? a : b; }
 inline float greatest(float a, float b) { return a > b ? a : b; }
 
-// Spelt out: compilers make one vector operation of this, but not of a loop over four.
+// Loops that are left standing become one vector operation; unrolled ones do not.
 inline Quad least(const Quad& a, const Quad& b) {
-  return {
-      {least(a.v[0], b.v[0]), least(a.v[1], b.v[1]), least(a.v[2], b.v[2]), least(a.v[3], b.v[3])}};
+  Quad r;
+#pragma GCC unroll 1
+  for (int k = 0; k < 4; ++k) r.v[k] = least(a.v[k], b.v[k]);
+  return r;
 }
 inline Quad greatest(const Quad& a, const Quad& b) {
-  return {{greatest(a.v[0], b.v[0]), greatest(a.v[1], b.v[1]), greatest(a.v[2], b.v[2]),
-           greatest(a.v[3], b.v[3])}};
+  Quad r;
+#pragma GCC unroll 1
+  for (int k = 0; k < 4; ++k) r.v[k] = greatest(a.v[k], b.v[k]);
+  return r;
 }
 
 /// The fourth lanes hold nothing of meaning.
@@ -71,9 +75,10 @@ class BuildItem {
   std::uint32_t index() const { return std::bit_cast<std::uint32_t>(box_.lo.v[3]) & ~kTag; }
   /// Halved before they are added, so that the sum stays in the range of float.
   Quad centroid() const {
-    const auto& [lo, hi] = box_;
-    return {{lo.v[0] * 0.5f + hi.v[0] * 0.5f, lo.v[1] * 0.5f + hi.v[1] * 0.5f,
-             lo.v[2] * 0.5f + hi.v[2] * 0.5f, lo.v[3] * 0.5f + hi.v[3] * 0.5f}};
+    Quad c;
+#pragma GCC unroll 1
+    for (int k = 0; k < 4; ++k) c.v[k] = box_.lo.v[k] * 0.5f + box_.hi.v[k] * 0.5f;
+    return c;
   }
 
  private:
@@ -104,11 +109,13 @@ class Binning {
   int bins() const { return static_cast<int>(last_.v[0]) + 1; }
   /// Centroids along the axis all fall into bin 0.
   bool is_blind(std::size_t axis) const { return !(scale_.v[axis] > 0); }
-  std::array<std::int32_t, 4> bin(const Quad& centroid) const {
-    const auto place = [&](std::size_t k) {
-      return static_cast<std::int32_t>(least((centroid.v[k] - lo_.v[k]) * scale_.v[k], last_.v[k]));
-    };
-    return {place(0), place(1), place(2), place(3)};
+  std::array<std::int32_t, 4> bin(const Quad& c) const {
+    std::array<std::int32_t, 4> b;
+#pragma GCC unroll 1
+    for (std::size_t k = 0; k < 4; ++k) {
+      b[k] = static_cast<std::int32_t>(least((c.v[k] - lo_.v[k]) * scale_.v[k], last_.v[k]));
+    }
+    return b;
   }
 
  private:

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "common/base/parallel.h"
 #include "common/structures/top_level.h"
 #include "tests/common/random_boxes.h"
 
@@ -113,6 +114,25 @@ TEST(WideBvh, FillsNodesAndLeaves) {
   std::size_t children = 0;
   for (const WideBvhNode& node : bvh.nodes) children += node.count;
   EXPECT_GT(static_cast<double>(children) / static_cast<double>(bvh.nodes.size()), 5.0);
+}
+
+TEST(WideBvh, IsTheSameForEveryNumberOfThreads) {
+  const std::vector<Aabb> boxes = test::scattered_boxes(30000, 1, 0.02f, 63);
+  const auto build = [&](int threads) {
+    const ThreadLimit limit(threads);
+    return build_wide_bvh(boxes, 16);
+  };
+  const WideBvh one = build(1);
+  for (const int threads : {2, 3}) {
+    const WideBvh several = build(threads);
+    ASSERT_EQ(several.items, one.items);
+    ASSERT_EQ(several.nodes.size(), one.nodes.size());
+    for (std::size_t i = 0; i < one.nodes.size(); ++i)
+      for (std::uint32_t c = 0; c < kBvhWidth; ++c) {
+        ASSERT_EQ(several.nodes[i].box(c), one.nodes[i].box(c));
+        ASSERT_EQ(several.nodes[i].child[c].index(), one.nodes[i].child[c].index());
+      }
+  }
 }
 
 TEST(TopLevel, LeavesOutEmptyBoxes) {

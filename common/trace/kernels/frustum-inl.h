@@ -76,22 +76,49 @@ class TileFrustum {
     return met & ((1u << node.count) - 1);
   }
 
-  /// Whether the box is outside or farther than `farthest`; false where in doubt.
-  HWY_INLINE bool misses(const Vec3f& lo, const Vec3f& hi, float farthest) const {
+  /// A kd-tree's cell and what each axis adds to the forms over it: a child differs in one axis.
+  struct Cell {
+    std::uint32_t node;
+    float lo[3], hi[3];
+    float nearest[3];                      ///< of the least depth
+    alignas(16) float largest[3][kSides];  ///< of the sides' largest values
+  };
+
+  HWY_INLINE void set_axis(Cell& cell, std::size_t axis, float lo, float hi) const {
     const hn::CappedTag<float, kSides> d;
-    const auto at = [&](std::size_t axis) {
-      const auto n = hn::Load(d, side_ + axis * kSides);
-      return hn::Max(hn::Mul(n, hn::Set(d, lo[axis])), hn::Mul(n, hn::Set(d, hi[axis])));
-    };
-    const auto value = hn::Add(hn::Add(at(0), at(1)), hn::Add(at(2), hn::Load(d, side_ + 12)));
-    if (!hn::AllFalse(d, hn::Lt(value, hn::Zero(d)))) return true;
-    const Vec3f& n = forms_.depth;
-    const auto depth = [&](const Vec3f& a, const Vec3f& b) {
-      return (n.x < 0 ? b.x : a.x) * n.x + (n.y < 0 ? b.y : a.y) * n.y +
-             (n.z < 0 ? b.z : a.z) * n.z;
-    };
-    if (depth(lo, hi) + forms_.depth_offset > farthest) return true;
-    return !forms_.in_front && depth(hi, lo) + forms_.front_offset < 0;
+    cell.lo[axis] = lo;
+    cell.hi[axis] = hi;
+    cell.nearest[axis] = forms_.depth[axis] * (forms_.depth[axis] < 0 ? hi : lo);
+    for (std::size_t k = 0; k < kSides; k += hn::Lanes(d)) {
+      const auto n = hn::Load(d, side_ + axis * kSides + k);
+      hn::Store(hn::Max(hn::Mul(n, hn::Set(d, lo)), hn::Mul(n, hn::Set(d, hi))), d,
+                cell.largest[axis] + k);
+    }
+  }
+
+  Cell cell_of(const Aabb& box, std::uint32_t node) const {
+    Cell cell;
+    cell.node = node;
+    for (std::size_t axis = 0; axis < 3; ++axis) set_axis(cell, axis, box.lo[axis], box.hi[axis]);
+    return cell;
+  }
+
+  /// Whether the cell is outside or farther than `farthest`; false where in doubt.
+  HWY_INLINE bool misses(const Cell& cell, float farthest) const {
+    const hn::CappedTag<float, kSides> d;
+    for (std::size_t k = 0; k < kSides; k += hn::Lanes(d)) {
+      const auto xy = hn::Add(hn::Load(d, cell.largest[0] + k), hn::Load(d, cell.largest[1] + k));
+      const auto zw =
+          hn::Add(hn::Load(d, cell.largest[2] + k), hn::Load(d, side_ + 3 * kSides + k));
+      if (!hn::AllFalse(d, hn::Lt(hn::Add(xy, zw), hn::Zero(d)))) return true;
+    }
+    const float depth = cell.nearest[0] + cell.nearest[1] + cell.nearest[2];
+    if (depth + forms_.depth_offset > farthest) return true;
+    if (forms_.in_front) return false;
+    float deepest = forms_.front_offset;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      deepest += forms_.depth[axis] * (forms_.depth[axis] < 0 ? cell.lo[axis] : cell.hi[axis]);
+    return deepest < 0;
   }
 
   /// Whether rays of the tile meet the cell below a split plane before the one above it.

@@ -19,31 +19,33 @@ namespace HWY_NAMESPACE {
 template <class Counter, class Visit>
 void walk_kd(const KdTreeView& tree, const TileFrustum& frustum, const BlockTester<Counter>& tester,
              const Visit& visit) {
-  struct Entry {
-    std::uint32_t node;
-    Vec3f lo, hi;
-  };
   if (tree.nodes.empty()) return;
-  Entry stack[kMaxKdDepth + 2];
+  TileFrustum::Cell stack[kMaxKdDepth + 2];
   std::size_t size = 0;
-  stack[size++] = {0, tree.bounds.lo, tree.bounds.hi};
+  stack[size++] = frustum.cell_of(tree.bounds, 0);
   while (size > 0) {
-    const Entry cell = stack[--size];
+    TileFrustum::Cell& cell = stack[size - 1];
     tester.counter().nodes(1);
-    if (frustum.misses(cell.lo, cell.hi, tester.image().farthest())) continue;
+    if (frustum.misses(cell, tester.image().farthest())) {
+      --size;
+      continue;
+    }
     const KdNode node = tree.nodes[cell.node];
     if (node.is_leaf()) {
+      --size;
       for (std::uint32_t i = 0; i < node.ref_count(); ++i) visit(tree.refs[node.first_ref() + i]);
       continue;
     }
-    Entry below = cell, above = cell;
+    // The far child takes the cell's place, the near one comes on top of it.
+    const std::uint32_t axis = node.axis();
+    const bool below_first = frustum.below_first(axis, node.split());
+    TileFrustum::Cell& next = stack[size++] = cell;
+    TileFrustum::Cell& below = below_first ? next : cell;
+    TileFrustum::Cell& above = below_first ? cell : next;
     below.node = node.below();
     above.node = node.above();
-    below.hi[node.axis()] = node.split();
-    above.lo[node.axis()] = node.split();
-    const bool below_first = frustum.below_first(node.axis(), node.split());
-    stack[size++] = below_first ? above : below;
-    stack[size++] = below_first ? below : above;
+    frustum.set_axis(below, axis, below.lo[axis], node.split());
+    frustum.set_axis(above, axis, node.split(), above.hi[axis]);
   }
 }
 
@@ -142,8 +144,7 @@ void two_level_kd(const TileRays& tile, const KdView& top, std::span<const KdVie
     if (!seen_clusters.is_new(c)) return;
     const KdView& cluster = clusters[c];
     const TileFrustum local(cluster.forms, tile);
-    const Aabb& bounds = cluster.tree.bounds;
-    if (local.misses(bounds.lo, bounds.hi, tester.image().farthest())) return;
+    if (local.misses(local.cell_of(cluster.tree.bounds, 0), tester.image().farthest())) return;
     tester.counter().clusters(1);
     walk_kd(cluster.tree, local, tester, [&](std::uint32_t triangle) {
       if (seen_triangles.is_new(triangle)) batch.push(triangle);
