@@ -14,7 +14,6 @@ namespace {
 
 constexpr std::uint32_t kLastRestart = 20;  // with more clusters a restart costs more than it finds
 constexpr std::uint32_t kClustersPerBatch = 32;  // one more is added at a time for each so many
-constexpr std::size_t kRestCandidates = 4;
 
 ClusterMembers members_of(const MovingMesh& mesh, const Clustering& clustering) {
   return make_cluster_members(mesh.triangles, clustering.cluster_of_triangle,
@@ -108,20 +107,13 @@ double clustering_cost(const MovingMesh& mesh, const Clustering& clustering,
   return expected_work(frames.clusters, options);
 }
 
-Clustering with_better_rest_pose(const MovingMesh& mesh, const Clustering& clustering,
-                                 const CostOptions& options) {
-  const RestPoseScores scores = score_rest_poses(mesh.poses, members_of(mesh, clustering));
-  Clustering best = clustering;
-  double least = clustering_cost(mesh, clustering, options);
-  for (const std::uint32_t row : best_rest_rows(scores, kRestCandidates)) {
-    if (row == clustering.rest_row) continue;
-    Clustering candidate = fit_assignment(mesh, row, clustering.cluster_of_triangle);
-    const double cost = clustering_cost(mesh, candidate, options);
-    if (cost >= least) continue;
-    least = cost;
-    best = std::move(candidate);
-  }
-  return best;
+Clustering with_papers_rest_pose(const MovingMesh& mesh, const Clustering& clustering) {
+  RestPoseOptions options;
+  options.rule = RestPoseRule::kIsExplained;
+  const std::uint32_t row =
+      best_rest_rows(score_rest_poses(mesh.poses, members_of(mesh, clustering), options), 1)[0];
+  return row == clustering.rest_row ? clustering
+                                    : fit_assignment(mesh, row, clustering.cluster_of_triangle);
 }
 
 Growth grow_clusters(const MovingMesh& mesh, std::uint32_t rest_row, const GrowthOptions& options,
@@ -133,7 +125,7 @@ Growth grow_clusters(const MovingMesh& mesh, std::uint32_t rest_row, const Growt
       fit_assignment(mesh, rest_row, std::vector<std::uint32_t>(mesh.triangles.size(), 0));
   for (;;) {
     if (!options.fixed_rest && std::has_single_bit(state.cluster_count))
-      state = with_better_rest_pose(mesh, state, options.cost);
+      state = with_papers_rest_pose(mesh, state);
     growth.steps.push_back(describe(mesh, state, options.cost));
     on_step(growth.steps.back());
     rule.look_at(growth.steps.back(), state);
@@ -144,7 +136,10 @@ Growth grow_clusters(const MovingMesh& mesh, std::uint32_t rest_row, const Growt
       rule.give_up();
       break;
     }
-    state = next.cluster_count > state.cluster_count ? std::move(next) : split_largest(mesh, state);
+    state = next.cluster_count > state.cluster_count
+                ? std::move(next)
+                : fit_assignment(mesh, state.rest_row,
+                                 halve_largest(mesh, state.rest_row, state.cluster_of_triangle));
   }
   growth.clustering = rule.take_best();
   growth.stop_reason = rule.reason();

@@ -43,9 +43,8 @@ double residual_rms(const MovingMesh& mesh, const Clustering& clustering);
 double clustering_cost(const MovingMesh& mesh, const Clustering& clustering,
                        const CostOptions& options);
 
-/// The clustering refitted to the best of a few promising rest poses, if that lowers its cost.
-Clustering with_better_rest_pose(const MovingMesh& mesh, const Clustering& clustering,
-                                 const CostOptions& options);
+/// The clustering refitted to the rest pose that GFW06 (3) prefers.
+Clustering with_papers_rest_pose(const MovingMesh& mesh, const Clustering& clustering);
 
 /// Grows clusters on the rows of `mesh`. After each insertion Lloyd runs twice, from the clusters
 /// as they are and from prototypes (GFW06 restarts always; keeping wins about as often), and the

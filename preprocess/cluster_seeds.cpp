@@ -122,34 +122,35 @@ Clustering restart_from_prototypes(const MovingMesh& mesh, const Clustering& clu
   return fit_assignment(mesh, clustering.rest_row, std::move(assignment));
 }
 
-Clustering split_largest(const MovingMesh& mesh, const Clustering& clustering) {
-  const ClusterMembers members =
-      make_cluster_members(mesh.triangles, clustering.cluster_of_triangle, clustering.cluster_count,
-                           mesh.poses.vertex_count);
-  std::uint32_t largest = 0;
-  for (std::uint32_t c = 1; c < clustering.cluster_count; ++c)
-    if (members.triangles_of(c).size() > members.triangles_of(largest).size()) largest = c;
+std::vector<std::uint32_t> halve_largest(const MovingMesh& mesh, std::uint32_t rest_row,
+                                         std::vector<std::uint32_t> cluster_of_triangle) {
+  const std::uint32_t count =
+      *std::max_element(cluster_of_triangle.begin(), cluster_of_triangle.end()) + 1;
+  std::vector<std::size_t> sizes(count, 0);
+  for (const std::uint32_t c : cluster_of_triangle) ++sizes[c];
+  const auto largest =
+      static_cast<std::uint32_t>(std::max_element(sizes.begin(), sizes.end()) - sizes.begin());
 
   const auto center = [&](std::uint32_t t) {
     Vec3d sum;
-    for (const std::uint32_t v : mesh.triangles[t].v)
-      sum += mesh.poses.position(clustering.rest_row, v);
+    for (const std::uint32_t v : mesh.triangles[t].v) sum += mesh.poses.position(rest_row, v);
     return sum;
   };
+  std::vector<std::uint32_t> order;
   Aabbd box;
-  const std::span<const std::uint32_t> cut = members.triangles_of(largest);
-  for (const std::uint32_t t : cut) box.extend(center(t));
+  for (std::uint32_t t = 0; t < cluster_of_triangle.size(); ++t)
+    if (cluster_of_triangle[t] == largest) {
+      order.push_back(t);
+      box.extend(center(t));
+    }
   const Vec3d e = box.extent();
   const std::size_t axis = e.x >= e.y && e.x >= e.z ? 0 : e.y >= e.z ? 1 : 2;
-  std::vector<std::uint32_t> order(cut.begin(), cut.end());
   std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
     return center(a)[axis] < center(b)[axis];
   });
-
-  std::vector<std::uint32_t> assignment = clustering.cluster_of_triangle;
   for (std::size_t i = order.size() / 2; i < order.size(); ++i)
-    assignment[order[i]] = clustering.cluster_count;
-  return fit_assignment(mesh, clustering.rest_row, std::move(assignment));
+    cluster_of_triangle[order[i]] = count;
+  return cluster_of_triangle;
 }
 
 }  // namespace mdk

@@ -38,7 +38,8 @@ Clustering restart_from_prototypes(const MovingMesh& mesh, const Clustering& clu
 
 /// The cluster with the most triangles cut in two halves at the median of its longest side in the
 /// rest pose; at least one cluster must have two triangles. For when motion gives no reason to
-/// split.
-Clustering split_largest(const MovingMesh& mesh, const Clustering& clustering);
+/// split. Returns the assignment with one cluster more.
+std::vector<std::uint32_t> halve_largest(const MovingMesh& mesh, std::uint32_t rest_row,
+                                         std::vector<std::uint32_t> cluster_of_triangle);
 
 }  // namespace mdk

@@ -8,17 +8,6 @@
 namespace mdk {
 namespace {
 
-/// Renumbers the clusters in use to 0..K-1, keeping their order; returns K.
-std::uint32_t drop_empty_clusters(std::vector<std::uint32_t>& cluster_of_triangle) {
-  const auto largest = std::max_element(cluster_of_triangle.begin(), cluster_of_triangle.end());
-  std::vector<std::uint32_t> number(largest == cluster_of_triangle.end() ? 0 : *largest + 1, 0);
-  for (const std::uint32_t c : cluster_of_triangle) number[c] = 1;
-  std::uint32_t count = 0;
-  for (std::uint32_t& n : number) n = n != 0 ? count++ : 0;
-  for (std::uint32_t& c : cluster_of_triangle) c = number[c];
-  return count;
-}
-
 double total_residual(const MovingMesh& mesh, const Clustering& clustering) {
   double sum = 0;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
@@ -29,6 +18,16 @@ double total_residual(const MovingMesh& mesh, const Clustering& clustering) {
 }
 
 }  // namespace
+
+std::uint32_t drop_empty_clusters(std::vector<std::uint32_t>& cluster_of_triangle) {
+  const auto largest = std::max_element(cluster_of_triangle.begin(), cluster_of_triangle.end());
+  std::vector<std::uint32_t> number(largest == cluster_of_triangle.end() ? 0 : *largest + 1, 0);
+  for (const std::uint32_t c : cluster_of_triangle) number[c] = 1;
+  std::uint32_t count = 0;
+  for (std::uint32_t& n : number) n = n != 0 ? count++ : 0;
+  for (std::uint32_t& c : cluster_of_triangle) c = number[c];
+  return count;
+}
 
 double residual_noise(const PoseTable& table) {
   constexpr double kLength = 1e-6;  // in table units: what float positions and sums leave behind

@@ -49,6 +49,9 @@ inline double triangle_residual(const Triangle& t, std::span<const float> vertex
          vertex_residuals[t.v[2]];
 }
 
+/// Renumbers the clusters in use to 0..K-1, keeping their order; returns K.
+std::uint32_t drop_empty_clusters(std::vector<std::uint32_t>& cluster_of_triangle);
+
 /// Fits maps to an assignment; clusters without triangles are dropped, the others keep their order.
 Clustering fit_assignment(const MovingMesh& mesh, std::uint32_t rest_row,
                           std::vector<std::uint32_t> cluster_of_triangle);

@@ -20,7 +20,7 @@
 namespace mdk {
 
 struct CostOptions {
-  double transform_cost = 6;  ///< of entering a cluster, in units of one triangle test
+  double transform_cost = 3;  ///< of entering a cluster, in units of one triangle test
   double outlier = 8;         ///< see above; at least 1
 };
 
@@ -67,6 +67,7 @@ struct FaceSums {
     yz += ey * ez;
     zx += ez * ex;
   }
+  FaceSums operator*(double f) const { return {xy * f, yz * f, zx * f}; }
   double area(const AreaWeights& w) const { return 2 * (w.xy * xy + w.yz * yz + w.zx * zx); }
 };
 

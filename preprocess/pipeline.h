@@ -34,12 +34,14 @@ struct DecomposeOptions {
   std::optional<std::uint32_t> rest_key;  ///< fixed rest pose; none: searched
   std::uint32_t segments = 0;             ///< exactly so many, or as many as there can be; 0: as
                                           ///< many as pay
+  bool refine = true;                     ///< improve maps towards the smallest boxes
 };
 
-/// What happened while clusters were added; row i is the state with i + 1 clusters.
+/// What happened while clusters were added, stage by stage, on the keys that were looked at then.
 struct ClusteringStep {
   std::uint32_t clusters = 0;
-  double residual_rms = 0;  ///< relative to the rest pose's diagonal
+  double residual_rms = 0;  ///< about the boxes' middles (with stop_percent: the rest pose),
+                            ///< relative to the rest pose's diagonal
   double sah_cost = 0;      ///< expected work per ray that meets the model (docs/method.md, cost)
 };
 
@@ -49,6 +51,7 @@ struct DecomposeStats {
   double residual_rms = 0;  ///< over all keys, relative to the rest pose's diagonal
   double residual_max = 0;
   double sah_cost = 0;
+  double refine_gain = 0;  ///< share by which refinement lowered the summed area of fuzzy boxes
   std::vector<ClusteringStep> steps;
   std::vector<std::string> notes;  ///< sentences on what could not be done as asked
   double decompose_seconds = 0, build_seconds = 0;

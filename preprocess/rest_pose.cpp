@@ -107,8 +107,8 @@ double unexplained(double trace, const Eigen::Matrix3d& m, const Eigen::Matrix3d
   return std::max(0.0, trace - (m.transpose() * inverse * m).trace());
 }
 
-/// Adds one cluster's residuals: residuals[r] += sum over t of what r leaves of t.
-void add_cluster(const CenteredPoses& poses, std::vector<double>& residuals) {
+/// Adds one cluster's residuals: residuals[r] += sum over t of what r leaves of t, or t of r.
+void add_cluster(const CenteredPoses& poses, RestPoseRule rule, std::vector<double>& residuals) {
   const std::size_t count = residuals.size();
   const std::size_t blocks = (count + kPosesPerBlock - 1) / kPosesPerBlock;
   const PoseMoments moments = pose_moments(poses);
@@ -127,9 +127,11 @@ void add_cluster(const CenteredPoses& poses, std::vector<double>& residuals) {
           for (std::size_t j = 0; j < 3; ++j)
             m(static_cast<int>(i), static_cast<int>(j)) =
                 gram[(3 * (r - begin) + i) * width + 3 * (t - begin) + j];
-        partial[block][r] += unexplained(moments.trace[t], m, moments.inverse[r]);
-        if (t != r)
-          partial[block][t] += unexplained(moments.trace[r], m.transpose(), moments.inverse[t]);
+        const double left_of_t = unexplained(moments.trace[t], m, moments.inverse[r]);
+        const double left_of_r = unexplained(moments.trace[r], m.transpose(), moments.inverse[t]);
+        const bool explains = rule == RestPoseRule::kExplainsOthers;
+        partial[block][r] += explains ? left_of_t : left_of_r;
+        if (t != r) partial[block][t] += explains ? left_of_r : left_of_t;
       }
   });
   for (const std::vector<double>& p : partial)
@@ -148,7 +150,7 @@ RestPoseScores score_rest_poses(const PoseTable& table, const ClusterMembers& me
   for (std::uint32_t row = 0; row < table.row_count(); row += step) scores.rows.push_back(row);
   scores.residuals.assign(scores.rows.size(), 0.0);
   for (std::uint32_t c = 0; c < members.cluster_count(); ++c)
-    add_cluster(center_poses(table, members, c, scores.rows), scores.residuals);
+    add_cluster(center_poses(table, members, c, scores.rows), options.rule, scores.residuals);
   return scores;
 }
 

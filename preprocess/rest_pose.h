@@ -6,8 +6,7 @@
 // from r to t leaves tr C_t - tr(M^T C_r^-1 M). GFW06 (3) sums the former, and so likes poses that
 // are small or squashed: in them every residual is small, while the maps blow boxes up in the
 // world. The latter asks the question that matters, how well r explains pose t, in pose t's own
-// lengths: scaling or squashing r changes nothing or makes it worse. Candidates are compared by the
-// latter.
+// lengths: scaling or squashing r changes nothing or makes it worse.
 #pragma once
 
 #include <cstdint>
@@ -18,13 +17,19 @@
 
 namespace mdk {
 
+enum class RestPoseRule {
+  kExplainsOthers,  ///< what r leaves of all t
+  kIsExplained,     ///< what all t leave of r: GFW06 (3), with squared distances
+};
+
 struct RestPoseOptions {
+  RestPoseRule rule = RestPoseRule::kExplainsOthers;
   double max_multiply_adds = 8e9;  ///< more work than this: candidates are a subset of the rows
 };
 
 struct RestPoseScores {
   std::vector<std::uint32_t> rows;  ///< candidates, rising
-  std::vector<double> residuals;    ///< beside `rows`: what the candidate leaves of all candidates'
+  std::vector<double> residuals;  ///< beside `rows`: what is left by the rule over all candidates'
                                   ///< poses, summed over clusters and corners, table units squared
 };
 

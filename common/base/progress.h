@@ -19,4 +19,17 @@ class SilentProgress final : public ProgressSink {
   void report(std::string_view, double) override {}
 };
 
+/// A part of a longer job: its 0 and 1 are `from` and `to` of the whole. The whole must outlive it.
+class ProgressPart final : public ProgressSink {
+ public:
+  ProgressPart(ProgressSink& whole, double from, double to) : whole_(whole), from_(from), to_(to) {}
+  void report(std::string_view stage, double fraction) override {
+    whole_.report(stage, from_ + (to_ - from_) * fraction);
+  }
+
+ private:
+  ProgressSink& whole_;
+  double from_, to_;
+};
+
 }  // namespace mdk

@@ -15,6 +15,7 @@ namespace mdk {
 struct AreaWeights {
   double xy = 1, yz = 1, zx = 1;
 
+  AreaWeights operator*(double f) const { return {xy * f, yz * f, zx * f}; }
   double area(const Vec3d& extent) const {
     return 2 * (xy * extent.x * extent.y + yz * extent.y * extent.z + zx * extent.z * extent.x);
   }

@@ -38,6 +38,7 @@ struct BakeArguments {
   std::string stop = "cost";
   std::string rest_pose = "auto";
   std::string segments = "auto";
+  std::string refine = "on";
   MachineOptions machine;
   MessageOptions messages;
 };
@@ -85,6 +86,10 @@ DecomposeOptions parse_decompose_options(const BakeArguments& arguments) {
     options.segments = parse_count("--segments", arguments.segments, {});
 
   parse_bone_options(arguments, options);
+  if (arguments.refine != "on" && arguments.refine != "off")
+    throw Error(ErrorCode::kUsage, "--refine " + arguments.refine + ": expected on or off");
+  options.refine = arguments.refine == "on";
+
   if (options.clusters > 0 && options.stop_percent)
     throw Error(ErrorCode::kUsage,
                 "--clusters N and --stop PCT contradict each other; give one of them");
@@ -199,10 +204,11 @@ void add_decompose_options(CLI::App& command, BakeArguments& arguments) {
                   "How many clusters: as many as pay, or exactly N, at least 1 (default: auto).")
       ->type_name("auto|N");
   command
-      .add_option("--stop", arguments.stop,
-                  "When to stop adding clusters: cost, when another would make rays dearer; a\n"
-                  "percentage above 0 and below 100, when another lowers the residual by less\n"
-                  "(default: cost).")
+      .add_option(
+          "--stop", arguments.stop,
+          "When to stop adding clusters: cost, when more would make rays dearer; a percentage\n"
+          "above 0 and below 100: cluster by residual motion, as in the paper, until\n"
+          "another cluster lowers it by less (default: cost).")
       ->type_name("cost|PCT");
   command
       .add_option("--rest-pose", arguments.rest_pose,
@@ -214,6 +220,10 @@ void add_decompose_options(CLI::App& command, BakeArguments& arguments) {
                   "Into how many stretches of time, each with boxes and trees of its own: as many\n"
                   "as their memory pays, or exactly N, at least 1 (default: auto).")
       ->type_name("auto|N");
+  command
+      .add_option("--refine", arguments.refine,
+                  "Whether to refine the clusters' maps towards the smallest boxes (default: on).")
+      ->type_name("on|off");
 }
 
 }  // namespace

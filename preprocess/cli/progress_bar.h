@@ -52,19 +52,6 @@ class ProgressBar final : public ProgressSink {
   bool bar_visible_ = false;
 };
 
-/// A part of a longer job: its 0 and 1 are `from` and `to` of the whole. The whole must outlive it.
-class ProgressPart final : public ProgressSink {
- public:
-  ProgressPart(ProgressSink& whole, double from, double to) : whole_(whole), from_(from), to_(to) {}
-  void report(std::string_view stage, double fraction) override {
-    whole_.report(stage, from_ + (to_ - from_) * fraction);
-  }
-
- private:
-  ProgressSink& whole_;
-  double from_, to_;
-};
-
 /// "[########------------]  42 %  decompose, 0:12 left"; `fraction` in [0, 1].
 std::string progress_bar_text(std::string_view stage, double fraction, double elapsed_seconds);
 

@@ -46,7 +46,8 @@ TEST_F(Bake, TheReportHasExactlyTheFieldsOfTheContract) {
   EXPECT_EQ(report["clips"], Json::parse(R"([{"name":"bend","seconds":1.0,"keys":31},
                                              {"name":"swing","seconds":0.5,"keys":16}])"));
   EXPECT_GE(report["segments"], 1);
-  EXPECT_EQ(report["refine_gain"], 0.0);
+  EXPECT_GE(report["refine_gain"], 0.0);
+  EXPECT_LT(report["refine_gain"], 1.0);
   EXPECT_EQ(report["file_bytes"], std::filesystem::file_size(folder_.file("a.mdk")));
   EXPECT_GT(report["peak_memory_bytes"], 1u << 20);
   EXPECT_GT(report["sah_cost"], 0.0);
@@ -84,6 +85,8 @@ TEST_F(Bake, OptionsReachTheDecomposition) {
   };
   EXPECT_EQ(report_with({"--clusters", "4"})["clusters"], 4);
   EXPECT_EQ(report_with({"--clusters", "4"})["stop_reason"], "count");
+  EXPECT_GT(report_with({"--clusters", "4"})["refine_gain"], 0.0);
+  EXPECT_EQ(report_with({"--clusters", "4", "--refine", "off"})["refine_gain"], 0.0);
   EXPECT_EQ(report_with({"--stop", "50"})["stop_reason"], "percent");
   EXPECT_EQ(report_with({"--decompose", "none"})["clusters"], 1);
   EXPECT_EQ(report_with({"--decompose", "none"})["stop_reason"], "none");

@@ -281,33 +281,71 @@ TEST(Decompose, AppearanceFollowsItsTriangles) {
   }
 }
 
-TEST(Decompose, StepsAreCountedFromOneAndTheResidualFalls) {
-  const DecomposeResult result = run(wild_motion(86, 12));
-  ASSERT_FALSE(result.stats.steps.empty());
-  for (std::size_t i = 0; i < result.stats.steps.size(); ++i)
-    EXPECT_EQ(result.stats.steps[i].clusters, i + 1);
-  EXPECT_LT(result.stats.steps.back().residual_rms, 0.5 * result.stats.steps.front().residual_rms);
+TEST(Decompose, StepsStartWithOneClusterAndEndWithWhatThereIs) {
+  const DecomposeResult result = run(independent_parts(6, 12));
+  const std::vector<ClusteringStep>& steps = result.stats.steps;
+  ASSERT_GE(steps.size(), 3u);
+  EXPECT_EQ(steps.front().clusters, 1u);
+  EXPECT_EQ(steps.back().clusters, result.model.clusters.size());
+  for (std::size_t i = 1; i < steps.size(); ++i) {
+    EXPECT_GT(steps[i].clusters, steps[i - 1].clusters);
+    EXPECT_LT(steps[i].sah_cost, steps[i - 1].sah_cost);
+  }
+  EXPECT_LT(steps.back().residual_rms, 0.01 * steps.front().residual_rms);
 }
 
-TEST(Decompose, ReportsProgressThatOnlyRisesWithinAStage) {
+TEST(Decompose, RefinementMakesBoxesSmallerAndSaysByHowMuch) {
+  for (const std::uint32_t seed : {87u, 88u, 89u}) {
+    DecomposeOptions options;
+    options.clusters = 4;
+    options.segments = 1;
+    SilentProgress progress;
+    const DecomposeResult refined = decompose(wild_motion(seed, 12), options, progress);
+    options.refine = false;
+    const DecomposeResult plain = decompose(wild_motion(seed, 12), options, progress);
+    EXPECT_EQ(plain.stats.refine_gain, 0);
+    EXPECT_GT(refined.stats.refine_gain, 0) << "seed " << seed;
+    EXPECT_LT(refined.stats.sah_cost, plain.stats.sah_cost) << "seed " << seed;
+  }
+}
+
+TEST(Decompose, CostsLittleMoreThanThePapersMethodEvenWhereBoxesAtKeysMislead) {
+  for (const std::uint32_t seed : {90u, 91u, 92u}) {
+    DecomposeOptions options;
+    options.segments = 1;
+    SilentProgress progress;
+    const DecomposeResult ours = decompose(wild_motion(seed, 24), options, progress);
+    options.stop_percent = 1;
+    options.refine = false;
+    const DecomposeResult paper = decompose(wild_motion(seed, 24), options, progress);
+    EXPECT_EQ(paper.stats.stop_reason, "percent");
+    EXPECT_LT(ours.stats.sah_cost, 1.1 * paper.stats.sah_cost) << "seed " << seed;
+  }
+}
+
+TEST(Decompose, ReportsProgressThatOnlyRises) {
   struct Recorder final : ProgressSink {
-    std::string stage;
     double last = 0;
     std::vector<std::string> stages;
     void report(std::string_view name, double fraction) override {
       EXPECT_GE(fraction, 0);
       EXPECT_LE(fraction, 1);
-      if (stages.empty() || stages.back() != name) {
-        stages.emplace_back(name);
-        last = 0;
-      }
+      if (stages.empty() || stages.back() != name) stages.emplace_back(name);
       EXPECT_GE(fraction, last);
+      longest_silence = std::max(longest_silence, fraction - last);
       last = fraction;
     }
-  } recorder;
-  decompose(wild_motion(87, 10), {}, recorder);
-  EXPECT_EQ(recorder.stages, (std::vector<std::string>{"decompose", "build"}));
-  EXPECT_EQ(recorder.last, 1);
+    double longest_silence = 0;
+  };
+  for (const bool paper : {false, true}) {
+    Recorder recorder;
+    DecomposeOptions options;
+    if (paper) options.stop_percent = 1;
+    decompose(wild_motion(87, 10), options, recorder);
+    EXPECT_EQ(recorder.stages, (std::vector<std::string>{"decompose", "build"}));
+    EXPECT_EQ(recorder.last, 1);
+    EXPECT_LT(recorder.longest_silence, 0.7);
+  }
 }
 
 TEST(Decompose, RefusesWhatDoesNotExist) {

@@ -1,0 +1,246 @@
+#include "preprocess/box_clustering.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "common/base/parallel.h"
+
+namespace mdk {
+namespace {
+
+constexpr std::size_t kVertexBlock = 256;
+constexpr std::size_t kTrianglesPerChunk = 2048;
+constexpr std::uint32_t kRowsForGrowth = 8;
+/// A triangle moves only for more than this share of its area: less is float noise.
+constexpr float kLeastShare = 1e-3f;
+
+FaceSums face_sums(const ClusterPoints& points, const PointBoxes& boxes) {
+  FaceSums sums;
+  for (std::size_t t = 0; t < points.triangle_count(); ++t)
+    sums.add(boxes.triangle(&points.corners[3 * t]));
+  return sums;
+}
+
+/// Rows: the directions in which the mapped points scatter, as a proper rotation.
+Affine3d principal_rotation(const double (&scatter)[3][3]) {
+  Eigen::Matrix3d m;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) m(i, j) = scatter[i][j];
+  Eigen::Matrix3d axes = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(m).eigenvectors();
+  if (axes.determinant() < 0) axes.col(0) = -axes.col(0);
+  Affine3d rotation;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) rotation.m[i][j] = axes(j, i);
+  return rotation;
+}
+
+Aabb world_box(const ClusterPoints& points, std::uint32_t row) {
+  const std::size_t at = points.row_offset(row);
+  Aabb box;
+  for (std::size_t i = at; i < at + points.vertex_count; ++i)
+    box.extend(Vec3f{points.x[i], points.y[i], points.z[i]});
+  const Vec3f center = to_float(points.centers[row]);
+  return {box.lo + center, box.hi + center};
+}
+
+/// Boxes of all vertices under one cluster's maps, one array per side.
+struct VertexBoxes {
+  std::vector<float> lo[3], hi[3];
+
+  explicit VertexBoxes(std::size_t vertices) {
+    for (int axis = 0; axis < 3; ++axis) {
+      lo[axis].resize(vertices);
+      hi[axis].resize(vertices);
+    }
+  }
+
+  void fill(const PoseTable& table, std::span<const Affine3d> maps) {
+    std::vector<Affine3f> narrow;
+    for (const Affine3d& m : maps) narrow.push_back(to_float(m));
+    parallel_chunks(table.vertex_count, kVertexBlock, [&](std::size_t begin, std::size_t end) {
+      for (int axis = 0; axis < 3; ++axis) fill_block(table, narrow, axis, {begin, end});
+    });
+  }
+
+  float area(const Triangle& t, const AreaWeights& w) const {
+    float e[3];
+    for (int axis = 0; axis < 3; ++axis) {
+      const std::vector<float>&l = lo[axis], &h = hi[axis];
+      e[axis] =
+          std::max({h[t.v[0]], h[t.v[1]], h[t.v[2]]}) - std::min({l[t.v[0]], l[t.v[1]], l[t.v[2]]});
+    }
+    return static_cast<float>(w.area({e[0], e[1], e[2]}));
+  }
+
+ private:
+  struct Range {
+    std::size_t begin, end;
+  };
+
+  void fill_block(const PoseTable& table, std::span<const Affine3f> maps, int axis, Range range) {
+    constexpr float kLargest = std::numeric_limits<float>::max();
+    float least[kVertexBlock], most[kVertexBlock];
+    std::fill_n(least, kVertexBlock, kLargest);
+    std::fill_n(most, kVertexBlock, -kLargest);
+    const std::size_t n = range.end - range.begin;
+    for (std::size_t row = 0; row < maps.size(); ++row) {
+      const float* m = maps[row].m[axis];
+      const float m0 = m[0], m1 = m[1], m2 = m[2], m3 = m[3];
+      const std::size_t at = table.row_offset(static_cast<std::uint32_t>(row)) + range.begin;
+      const float* __restrict x = &table.x[at];
+      const float* __restrict y = &table.y[at];
+      const float* __restrict z = &table.z[at];
+      for (std::size_t i = 0; i < n; ++i) {
+        const float p = m0 * x[i] + m1 * y[i] + m2 * z[i] + m3;
+        least[i] = p < least[i] ? p : least[i];
+        most[i] = p > most[i] ? p : most[i];
+      }
+    }
+    std::copy_n(least, n, &lo[axis][range.begin]);
+    std::copy_n(most, n, &hi[axis][range.begin]);
+  }
+};
+
+/// What a triangle would add to the price of entering a cluster: its world boxes grow.
+double entry_growth(const BoxProblem& problem, const BoxCluster& cluster, const Triangle& t) {
+  const PoseTable& table = problem.mesh.poses;
+  const std::uint32_t step = (table.row_count() + kRowsForGrowth - 1) / kRowsForGrowth;
+  double sum = 0, rows = 0;
+  for (std::uint32_t row = 0; row < table.row_count(); row += step) {
+    rows += 1;
+    if (!(problem.measure.model_areas[row] > 0)) continue;
+    const Aabb& box = cluster.world_boxes[row];
+    Aabb grown = box;
+    for (const std::uint32_t v : t.v) grown.extend(to_float(table.position(row, v)));
+    sum += (grown.surface_area() - box.surface_area()) / problem.measure.model_areas[row];
+  }
+  return sum / rows * problem.measure.cost.transform_cost;
+}
+
+std::size_t move_triangles(const BoxProblem& problem, const BoxClustering& clustering,
+                           const BoxAlternatives& alternatives,
+                           std::vector<std::uint32_t>& assignment) {
+  const std::span<const Triangle> triangles = problem.mesh.triangles;
+  std::vector<std::size_t> moved((triangles.size() + kTrianglesPerChunk - 1) / kTrianglesPerChunk,
+                                 0);
+  parallel_chunks(triangles.size(), kTrianglesPerChunk, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t t = begin; t < end; ++t) {
+      const double gain = alternatives.own_area[t] * (1 - kLeastShare) - alternatives.other_area[t];
+      if (!(gain > 0)) continue;
+      const std::uint32_t other = alternatives.other[t];
+      if (entry_growth(problem, clustering.clusters[other], triangles[t]) >= gain) continue;
+      assignment[t] = other;
+      ++moved[begin / kTrianglesPerChunk];
+    }
+  });
+  std::size_t sum = 0;
+  for (const std::size_t m : moved) sum += m;
+  return sum;
+}
+
+}  // namespace
+
+BoxCluster fit_box_cluster(const BoxMeasure& measure, const ClusterPoints& points) {
+  PointFit fit = fit_points(points, row_targets(points, measure.rest_row), points.weights);
+  fit = fit_points(points, mapped_boxes(points, fit.maps).centers(), points.weights);
+
+  std::vector<Affine3d> turned(fit.maps.size());
+  const Affine3d rotation = principal_rotation(fit.scatter);
+  for (std::size_t row = 0; row < turned.size(); ++row) turned[row] = rotation * fit.maps[row];
+
+  BoxCluster cluster;
+  const PointTargets middles = mapped_boxes(points, fit.maps).centers();
+  const std::vector<float> residuals = point_residuals(points, fit.maps, middles);
+  for (std::size_t i = 0; i < points.vertex_count; ++i)
+    cluster.residual += static_cast<double>(points.weights[i]) * residuals[i];
+  for (const std::vector<Affine3d>* maps : {&fit.maps, &turned}) {
+    ClusterWork work;
+    work.fuzzy_boxes = face_sums(points, mapped_boxes(points, *maps)) * measure.triangle_weight;
+    work.weights = mean_area_weights(*maps, measure.model_areas, measure.cost);
+    if (!cluster.maps.empty() &&
+        work.fuzzy_boxes.area(work.weights) >= cluster.work.fuzzy_boxes.area(cluster.work.weights))
+      continue;
+    cluster.maps = *maps;
+    cluster.work = work;
+  }
+  cluster.maps = from_table(points, cluster.maps);
+
+  double met = 0, rows = 0;
+  for (std::uint32_t row = 0; row < points.row_count; ++row) {
+    cluster.world_boxes.push_back(world_box(points, row));
+    if (!(measure.model_areas[row] > 0)) continue;
+    met += cluster.world_boxes.back().surface_area() / measure.model_areas[row];
+    rows += 1;
+  }
+  cluster.work.hit_probability = rows > 0 ? met / rows : 1;
+  return cluster;
+}
+
+BoxClustering fit_boxes(const BoxProblem& problem, std::vector<std::uint32_t> cluster_of_triangle) {
+  BoxClustering result;
+  const std::uint32_t count = drop_empty_clusters(cluster_of_triangle);
+  result.cluster_of_triangle = std::move(cluster_of_triangle);
+  result.clusters.resize(count);
+  const ClusterMembers members = make_cluster_members(
+      problem.mesh.triangles, result.cluster_of_triangle, count, problem.mesh.poses.vertex_count);
+  parallel_chunks(count, 1, [&](std::size_t c, std::size_t) {
+    result.clusters[c] = fit_box_cluster(
+        problem.measure, gather_points(problem.mesh.poses, members, static_cast<std::uint32_t>(c)));
+  });
+  for (const BoxCluster& c : result.clusters) result.cost += c.cost(problem.measure.cost);
+  return result;
+}
+
+BoxAlternatives find_alternatives(const BoxProblem& problem, const BoxClustering& clustering) {
+  const std::span<const Triangle> triangles = problem.mesh.triangles;
+  BoxAlternatives result;
+  result.own_area.resize(triangles.size());
+  result.other_area.assign(triangles.size(), std::numeric_limits<float>::infinity());
+  result.other.assign(triangles.size(), 0);
+  VertexBoxes boxes(problem.mesh.poses.vertex_count);
+  for (std::uint32_t c = 0; c < clustering.cluster_count(); ++c) {
+    const BoxCluster& cluster = clustering.clusters[c];
+    const AreaWeights weights = cluster.work.weights * problem.measure.triangle_weight;
+    boxes.fill(problem.mesh.poses, cluster.maps);
+    parallel_chunks(triangles.size(), kTrianglesPerChunk, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t t = begin; t < end; ++t) {
+        const float area = boxes.area(triangles[t], weights);
+        if (clustering.cluster_of_triangle[t] == c) {
+          result.own_area[t] = area;
+        } else if (area < result.other_area[t]) {
+          result.other_area[t] = area;
+          result.other[t] = c;
+        }
+      }
+    });
+  }
+  return result;
+}
+
+std::vector<std::uint32_t> assign_to_smallest_boxes(const BoxProblem& problem,
+                                                    std::vector<BoxCluster> clusters) {
+  BoxClustering nowhere;
+  nowhere.clusters = std::move(clusters);
+  nowhere.cluster_of_triangle.assign(problem.mesh.triangles.size(), nowhere.cluster_count());
+  return find_alternatives(problem, nowhere).other;
+}
+
+BoxClustering relax_boxes(const BoxProblem& problem, BoxClustering start,
+                          const LloydOptions& options) {
+  BoxClustering best = std::move(start);
+  for (int round = 0; round < options.max_rounds; ++round) {
+    std::vector<std::uint32_t> assignment = best.cluster_of_triangle;
+    if (move_triangles(problem, best, find_alternatives(problem, best), assignment) == 0) break;
+    BoxClustering next = fit_boxes(problem, std::move(assignment));
+    const double gain = best.cost - next.cost;
+    if (gain <= 0) break;
+    const bool last = gain < options.min_gain * best.cost;
+    best = std::move(next);
+    if (last) break;
+  }
+  return best;
+}
+
+}  // namespace mdk

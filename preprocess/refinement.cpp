@@ -1,0 +1,359 @@
+#include "preprocess/refinement.h"
+
+#include <ceres/ceres.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+namespace mdk {
+namespace {
+
+using Matrix = Eigen::Matrix3d;
+
+constexpr std::size_t kParametersPerRow = 12;
+constexpr float kLeastScale = 0.02f;  // of the mean extent: keeps 16th powers inside float
+constexpr float kLeastNorm = 0.01f;   // below it a vertex stands still
+
+/// x^15 and x^16 by squaring.
+float power15(float x) {
+  const float x2 = x * x, x4 = x2 * x2, x8 = x4 * x4;
+  return x8 * x4 * (x2 * x);
+}
+float power16(float x) {
+  const float x2 = x * x, x4 = x2 * x2, x8 = x4 * x4;
+  return x8 * x8;
+}
+
+/// The points of each row in coordinates in which they have unit scatter.
+struct WhitePoints {
+  std::vector<Matrix> factor;   ///< R: x = factor w, lower triangular
+  std::vector<Matrix> inverse;  ///< R
+  std::vector<float> axis[3];   ///< R * stride
+
+  explicit WhitePoints(const ClusterPoints& points) {
+    for (std::vector<float>& a : axis) a.resize(points.row_count * points.stride);
+    for (std::uint32_t row = 0; row < points.row_count; ++row) add_row(points, row);
+  }
+
+ private:
+  void add_row(const ClusterPoints& points, std::uint32_t row) {
+    const std::size_t at = points.row_offset(row);
+    Matrix scatter = Matrix::Zero();
+    for (std::size_t i = at; i < at + points.vertex_count; ++i) {
+      const Eigen::Vector3d p(points.x[i], points.y[i], points.z[i]);
+      scatter += p * p.transpose();
+    }
+    scatter /= std::max(1.0, static_cast<double>(points.vertex_count));
+    const double ridge = 1e-3 * scatter.trace() + 1e-14;
+    const Matrix lower = (scatter + ridge * Matrix::Identity()).llt().matrixL();
+    factor.push_back(lower);
+    inverse.push_back(lower.inverse());
+    const Eigen::Matrix3f narrow = inverse.back().cast<float>();
+    for (std::size_t i = at; i < at + points.vertex_count; ++i) {
+      const Eigen::Vector3f w = narrow * Eigen::Vector3f(points.x[i], points.y[i], points.z[i]);
+      for (int k = 0; k < 3; ++k) axis[k][i] = w(k);
+    }
+  }
+};
+
+/// The smooth cost of one cluster and its gradient over all rows' maps.
+class SmoothCost final : public ceres::FirstOrderFunction {
+ public:
+  SmoothCost(const ClusterPoints& points, const WhitePoints& white, std::span<const double> areas,
+             const CostOptions& cost)
+      : points_(points), white_(white), areas_(areas), cost_(cost) {
+    for (const double a : areas_) counted_rows_ += a > 0;
+  }
+
+  /// Sets the boxes' middles, the scale of powers and the caps of weights by these maps.
+  void settle(std::span<const Affine3d> maps) {
+    const PointBoxes boxes = mapped_boxes(points_, maps);
+    for (int k = 0; k < 3; ++k) {
+      middle_[k].resize(points_.stride);
+      scale_[k].resize(points_.stride);
+      double sum = 0;
+      for (std::size_t i = 0; i < points_.stride; ++i) {
+        middle_[k][i] = 0.5f * (boxes.lo[k][i] + boxes.hi[k][i]);
+        scale_[k][i] = 0.5f * (boxes.hi[k][i] - boxes.lo[k][i]);
+      }
+      for (std::size_t i = 0; i < points_.vertex_count; ++i) sum += scale_[k][i];
+      mean_extent_[k] = static_cast<float>(sum / points_.vertex_count);
+    }
+    const float least = kLeastScale * std::max({mean_extent_[0], mean_extent_[1], mean_extent_[2]});
+    for (std::vector<float>& s : scale_)
+      for (float& v : s) v = std::max(v, std::max(least, 1e-12f));
+    caps_ = weight_caps(maps);
+    unit_ = 1;
+    double value = 0;
+    std::vector<double> start = parameters_of(maps);
+    Evaluate(start.data(), &value, nullptr);
+    if (value > 0 && std::isfinite(value)) unit_ = 1 / value;
+  }
+
+  std::vector<double> parameters_of(std::span<const Affine3d> maps) const {
+    std::vector<double> parameters;
+    parameters.reserve(kParametersPerRow * maps.size());
+    for (std::size_t row = 0; row < maps.size(); ++row)
+      for (int i = 0; i < 3; ++i) {
+        const Eigen::RowVector3d linear(maps[row].m[i][0], maps[row].m[i][1], maps[row].m[i][2]);
+        const Eigen::RowVector3d white = linear * white_.factor[row];
+        for (int j = 0; j < 3; ++j) parameters.push_back(white(j));
+        parameters.push_back(maps[row].m[i][3]);
+      }
+    return parameters;
+  }
+
+  std::vector<Affine3d> maps_of(std::span<const double> parameters) const {
+    std::vector<Affine3d> maps(points_.row_count);
+    for (std::size_t row = 0; row < maps.size(); ++row) {
+      const Matrix linear = linear_part(&parameters[kParametersPerRow * row], row);
+      for (int i = 0; i < 3; ++i) {
+        for (int j = 0; j < 3; ++j) maps[row].m[i][j] = linear(i, j);
+        maps[row].m[i][3] =
+            parameters[kParametersPerRow * row + 4 * static_cast<std::size_t>(i) + 3];
+      }
+    }
+    return maps;
+  }
+
+  int NumParameters() const override {
+    return static_cast<int>(kParametersPerRow * points_.row_count);
+  }
+
+  bool Evaluate(const double* parameters, double* value, double* gradient) const override {
+    Norms norms = vertex_norms(parameters);
+    const Sides weights = mean_weights(parameters);
+    Norms pull;
+    for (std::vector<float>& p : pull.axis) p.assign(points_.stride, 0.0f);
+    const Sides sums = side_sums(norms, weights, pull);
+    double cost = 0;
+    for (std::size_t s = 0; s < 3; ++s) cost += 2 * weights[s] * sums[s];
+    *value = cost * unit_;
+    if (gradient != nullptr) {
+      std::fill_n(gradient, NumParameters(), 0.0);
+      for (int k = 0; k < 3; ++k) add_pull(parameters, k, norms.axis[k], pull.axis[k], gradient);
+      add_weight_gradient(parameters, sums, gradient);
+      for (int i = 0; i < NumParameters(); ++i) gradient[i] *= unit_;
+    }
+    return std::isfinite(*value);
+  }
+
+ private:
+  /// One number per side: spanned by axes 1 and 2, 2 and 0, 0 and 1 (the normal's axis counts).
+  using Sides = std::array<double, 3>;
+  struct Norms {
+    std::vector<float> axis[3];  ///< stride
+  };
+
+  Matrix linear_part(const double* row_parameters, std::size_t row) const {
+    Matrix white;
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) white(i, j) = row_parameters[4 * i + j];
+    return white * white_.inverse[row];
+  }
+
+  /// What a side with unit extents is worth in the world under a map with this linear part.
+  Sides side_weights(const Matrix& linear) const {
+    const double det = std::abs(linear.determinant());
+    return {linear.row(0).norm() / det, linear.row(1).norm() / det, linear.row(2).norm() / det};
+  }
+
+  Sides weight_caps(std::span<const Affine3d> maps) const {
+    Sides caps{};
+    std::vector<double> values[3];
+    for (std::size_t row = 0; row < maps.size(); ++row) {
+      if (!(areas_[row] > 0)) continue;
+      const AreaWeights w = world_area_weights(maps[row]);
+      values[0].push_back(w.yz / areas_[row]);
+      values[1].push_back(w.zx / areas_[row]);
+      values[2].push_back(w.xy / areas_[row]);
+    }
+    for (std::size_t s = 0; s < 3; ++s) {
+      if (values[s].empty()) continue;
+      const auto middle = values[s].begin() + static_cast<std::ptrdiff_t>(values[s].size() / 2);
+      std::nth_element(values[s].begin(), middle, values[s].end());
+      caps[s] = cost_.outlier * *middle;
+    }
+    return caps;
+  }
+
+  Sides mean_weights(const double* parameters) const {
+    Sides mean{};
+    for (std::size_t row = 0; row < points_.row_count; ++row) {
+      if (!(areas_[row] > 0)) continue;
+      const Sides w = side_weights(linear_part(parameters + kParametersPerRow * row, row));
+      for (std::size_t s = 0; s < 3; ++s) mean[s] += std::min(w[s] / areas_[row], caps_[s]);
+    }
+    for (double& m : mean) m /= std::max(1, counted_rows_);
+    return mean;
+  }
+
+  /// (sum over rows of ((x - c) / h)^16)^(1/16) per vertex and axis.
+  Norms vertex_norms(const double* parameters) const {
+    Norms norms;
+    const std::size_t n = points_.stride;
+    for (int k = 0; k < 3; ++k) {
+      norms.axis[k].assign(n, 0.0f);
+      std::vector<float> per_scale(n);
+      for (std::size_t i = 0; i < n; ++i) per_scale[i] = 1 / scale_[k][i];
+      float* __restrict sum = norms.axis[k].data();
+      const float* __restrict c = middle_[k].data();
+      const float* __restrict h = per_scale.data();
+      for (std::uint32_t row = 0; row < points_.row_count; ++row) {
+        const double* p = parameters + kParametersPerRow * row + 4 * k;
+        const float m0 = static_cast<float>(p[0]), m1 = static_cast<float>(p[1]),
+                    m2 = static_cast<float>(p[2]), m3 = static_cast<float>(p[3]);
+        const std::size_t at = points_.row_offset(row);
+        const float* __restrict x = &white_.axis[0][at];
+        const float* __restrict y = &white_.axis[1][at];
+        const float* __restrict z = &white_.axis[2][at];
+        for (std::size_t i = 0; i < n; ++i)
+          sum[i] += power16((m0 * x[i] + m1 * y[i] + m2 * z[i] + (m3 - c[i])) * h[i]);
+      }
+      for (std::size_t i = 0; i < n; ++i)
+        sum[i] = std::sqrt(std::sqrt(std::sqrt(std::sqrt(sum[i]))));
+    }
+    return norms;
+  }
+
+  /// Sums of products of extents; `pull` receives the derivative of the cost by half-extents.
+  Sides side_sums(const Norms& norms, const Sides& weights, Norms& pull) const {
+    Sides sums{};
+    for (std::size_t t = 0; t < points_.triangle_count(); ++t) {
+      const std::uint32_t* v = &points_.corners[3 * t];
+      std::uint32_t top[3], bottom[3];
+      double extent[3];
+      for (std::size_t k = 0; k < 3; ++k) {
+        float most = -std::numeric_limits<float>::infinity(), least = -most;
+        top[k] = bottom[k] = v[0];
+        for (std::size_t corner = 0; corner < 3; ++corner) {
+          const std::uint32_t i = v[corner];
+          const float half = scale_[k][i] * norms.axis[k][i];
+          if (middle_[k][i] + half > most) {
+            most = middle_[k][i] + half;
+            top[k] = i;
+          }
+          if (middle_[k][i] - half < least) {
+            least = middle_[k][i] - half;
+            bottom[k] = i;
+          }
+        }
+        extent[k] = static_cast<double>(most) - least;
+      }
+      for (std::size_t s = 0; s < 3; ++s) {
+        const std::size_t a = (s + 1) % 3, b = (s + 2) % 3;
+        sums[s] += extent[a] * extent[b];
+        const auto by_a = static_cast<float>(2 * weights[s] * extent[b]);
+        const auto by_b = static_cast<float>(2 * weights[s] * extent[a]);
+        pull.axis[a][top[a]] += by_a;
+        pull.axis[a][bottom[a]] += by_a;
+        pull.axis[b][top[b]] += by_b;
+        pull.axis[b][bottom[b]] += by_b;
+      }
+    }
+    return sums;
+  }
+
+  /// d half-extent / d x = ((x - c) / h)^15 / norm^15, times d x / d map, summed over vertices.
+  void add_pull(const double* parameters, int k, std::span<const float> norm,
+                std::span<const float> pull, double* gradient) const {
+    const std::size_t n = points_.stride;
+    std::vector<float> strength(n), per_scale(n);
+    for (std::size_t i = 0; i < n; ++i) {
+      per_scale[i] = 1 / scale_[k][i];
+      strength[i] = norm[i] > kLeastNorm ? pull[i] / power15(norm[i]) : 0.0f;
+    }
+    for (std::uint32_t row = 0; row < points_.row_count; ++row) {
+      const double* p = parameters + kParametersPerRow * row + 4 * k;
+      const float m0 = static_cast<float>(p[0]), m1 = static_cast<float>(p[1]),
+                  m2 = static_cast<float>(p[2]), m3 = static_cast<float>(p[3]);
+      const std::size_t at = points_.row_offset(row);
+      const float* __restrict x = &white_.axis[0][at];
+      const float* __restrict y = &white_.axis[1][at];
+      const float* __restrict z = &white_.axis[2][at];
+      const float* __restrict c = middle_[k].data();
+      const float* __restrict h = per_scale.data();
+      const float* __restrict w = strength.data();
+      float sx[kPointLanes] = {}, sy[kPointLanes] = {}, sz[kPointLanes] = {}, s1[kPointLanes] = {};
+      for (std::size_t i = 0; i < n; i += kPointLanes)
+        for (std::size_t l = 0; l < kPointLanes; ++l) {
+          const std::size_t j = i + l;
+          const float u = (m0 * x[j] + m1 * y[j] + m2 * z[j] + (m3 - c[j])) * h[j];
+          const float g = w[j] * power15(u);
+          sx[l] += g * x[j];
+          sy[l] += g * y[j];
+          sz[l] += g * z[j];
+          s1[l] += g;
+        }
+      double* out = gradient + kParametersPerRow * row + 4 * k;
+      for (std::size_t l = 0; l < kPointLanes; ++l) {
+        out[0] += sx[l];
+        out[1] += sy[l];
+        out[2] += sz[l];
+        out[3] += s1[l];
+      }
+    }
+  }
+
+  /// W of side s at a row is |a_s| / |det A|, and d|det A| = |det A| A^-T : dA.
+  void add_weight_gradient(const double* parameters, const Sides& sums, double* gradient) const {
+    for (std::size_t row = 0; row < points_.row_count; ++row) {
+      if (!(areas_[row] > 0)) continue;
+      const Matrix linear = linear_part(parameters + kParametersPerRow * row, row);
+      const Sides w = side_weights(linear);
+      const Matrix by_determinant = linear.inverse().transpose();
+      Matrix slope = Matrix::Zero();
+      for (int s = 0; s < 3; ++s) {
+        const auto side = static_cast<std::size_t>(s);
+        if (!(w[side] / areas_[row] < caps_[side])) continue;
+        const double share = 2 * sums[side] * w[side] / (areas_[row] * counted_rows_);
+        slope -= share * by_determinant;
+        slope.row(s) += share * linear.row(s) / linear.row(s).squaredNorm();
+      }
+      const Matrix white = slope * white_.inverse[row].transpose();
+      for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j)
+          gradient[kParametersPerRow * row + static_cast<std::size_t>(4 * i + j)] += white(i, j);
+    }
+  }
+
+  const ClusterPoints& points_;
+  const WhitePoints& white_;
+  std::span<const double> areas_;
+  const CostOptions& cost_;
+  int counted_rows_ = 0;
+  std::vector<float> middle_[3], scale_[3];
+  float mean_extent_[3] = {};
+  Sides caps_{};
+  double unit_ = 1;  ///< makes the start's cost 1
+};
+
+}  // namespace
+
+std::vector<Affine3d> refine_maps(const ClusterPoints& points, std::span<const Affine3d> maps,
+                                  std::span<const double> model_areas, const CostOptions& cost,
+                                  const RefineOptions& options) {
+  const WhitePoints white(points);
+  std::vector<Affine3d> best(maps.begin(), maps.end());
+  for (int restart = 0; restart < options.restarts; ++restart) {
+    auto* function = new SmoothCost(points, white, model_areas, cost);
+    const ceres::GradientProblem problem(function);  // owns it
+    function->settle(best);
+    std::vector<double> parameters = function->parameters_of(best);
+    ceres::GradientProblemSolver::Options solver;
+    solver.logging_type = ceres::SILENT;
+    solver.max_num_iterations = options.iterations;
+    solver.line_search_interpolation_type = ceres::QUADRATIC;
+    solver.function_tolerance = 1e-3;
+    ceres::GradientProblemSolver::Summary summary;
+    ceres::Solve(solver, problem, parameters.data(), &summary);
+    if (!summary.IsSolutionUsable() || !(summary.final_cost < summary.initial_cost)) break;
+    best = function->maps_of(parameters);
+  }
+  return best;
+}
+
+}  // namespace mdk
