@@ -50,4 +50,9 @@ KeyMaps identity_key_maps(const PoseSequence& sequence, const ClusterMembers& me
 ResidualStats residual_stats(const PoseSequence& sequence, const ClusterMembers& members,
                              std::span<const Affine3f> local_from_world, std::uint32_t rest_key);
 
+/// Residuals of any maps: local positions taken back to the world by the cluster's map at the rest
+/// key, and compared with the rest pose. Cost: O(keys * vertices).
+ResidualStats residual_stats(const PoseSequence& sequence, const ClusterMembers& members,
+                             std::span<const Affine3f> local_from_world, std::uint32_t rest_key);
+
 }  // namespace mdk

@@ -228,8 +228,8 @@ DecomposeResult decompose(PoseSequence sequence, const DecomposeOptions& options
     parts.pose_space_boxes = pose_space_boxes(pose_space_of(sequence), members, decided.bones);
     parts.cluster_bones = std::move(decided.bones);
   } else {
-    parts.segments =
-        choose_segments(sequence, members, parts.local_from_world, {.count = options.segments});
+    parts.segments = choose_segments(sequence, decided.members, parts.local_from_world,
+                                     {.count = options.segments});
   }
   decomposing.report("decompose", 1);
   const double decompose_seconds = watch.lap();

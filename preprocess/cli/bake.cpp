@@ -90,6 +90,10 @@ DecomposeOptions parse_decompose_options(const BakeArguments& arguments) {
   options.refine = arguments.refine == "on";
 
   parse_bone_options(arguments, options);
+  if (arguments.refine != "on" && arguments.refine != "off")
+    throw Error(ErrorCode::kUsage, "--refine " + arguments.refine + ": expected on or off");
+  options.refine = arguments.refine == "on";
+
   if (options.clusters > 0 && options.stop_percent)
     throw Error(ErrorCode::kUsage,
                 "--clusters N and --stop PCT contradict each other; give one of them");
