@@ -53,18 +53,38 @@ std::vector<ClusterBone> choose_bone_bases(const PoseSequence& sequence, const P
   return result;
 }
 
-KeyMaps bone_key_maps(const PoseSequence& sequence, std::span<const ClusterBone> bones) {
+KeyMaps bone_key_maps(const PoseSequence& sequence, const ClusterMembers& members,
+                      std::span<const ClusterBone> bones, std::uint32_t rest_key) {
   const std::vector<std::uint32_t> keys = all_keys(sequence);
   const std::size_t clusters = bones.size();
   KeyMaps result;
   result.local_from_world.resize(keys.size() * clusters);
+  std::vector<ResidualStats> residuals(clusters);  // rms: still the sum of squares
   parallel_chunks(clusters, 1, [&](std::size_t c, std::size_t) {
     const std::vector<Affine3d> from_world =
         base_from_world(*sequence.rig, bones[c].bone, keys, sequence.key_count());
     for (std::size_t key = 0; key < keys.size(); ++key)
       result.local_from_world[key * clusters + c] =
           to_float(to_double(bones[c].local_from_base) * from_world[key]);
+    const auto local = [&](std::uint32_t key, std::uint32_t vertex) {
+      return from_world[key].point(to_double(sequence.pose(key)[vertex]));
+    };
+    for (std::uint32_t s = members.vertex_begin[c]; s < members.vertex_begin[c + 1]; ++s) {
+      const Vec3d rest = local(rest_key, members.vertices[s]);
+      for (const std::uint32_t key : keys) {
+        const Vec3d d = local(key, members.vertices[s]) - rest;
+        residuals[c].rms += members.uses[s] * dot(d, d);
+        residuals[c].max = std::max(residuals[c].max, dot(d, d));
+      }
+    }
   });
+  for (const ResidualStats& r : residuals) {
+    result.residual.rms += r.rms;
+    result.residual.max = std::max(result.residual.max, r.max);
+  }
+  const double terms =
+      3.0 * static_cast<double>(members.triangles.size()) * static_cast<double>(keys.size());
+  result.residual = {std::sqrt(result.residual.rms / terms), std::sqrt(result.residual.max)};
   return result;
 }
 

@@ -20,8 +20,9 @@ std::vector<ClusterBone> choose_bone_bases(const PoseSequence& sequence, const P
                                            const ClusterMembers& members,
                                            std::span<const std::uint32_t> bones);
 
-/// local_from_base * bone⁻¹ at every key.
-KeyMaps bone_key_maps(const PoseSequence& sequence, std::span<const ClusterBone> bones);
+/// local_from_base * bone⁻¹ at every key. Residuals are distances to the position at `rest_key`.
+KeyMaps bone_key_maps(const PoseSequence& sequence, const ClusterMembers& members,
+                      std::span<const ClusterBone> bones, std::uint32_t rest_key);
 
 /// Per triangle, in the order of `members.triangles`: a box that holds it in every pose of the
 /// space, in its cluster's basis. Throws Error (kBadInput) where a bone that must be inverted is

@@ -11,6 +11,8 @@
 namespace mdk {
 namespace {
 
+constexpr std::uint32_t kFewClusters = 8;  // with more, a stage that saves nothing is the last
+
 BoxGrowthStep describe(const BoxProblem& problem, const BoxClustering& clustering) {
   double residual = 0;
   for (const BoxCluster& c : clustering.clusters) residual += c.residual;
@@ -46,11 +48,13 @@ BoxClustering cut_and_relaxed(const BoxProblem& problem, const BoxClustering& cl
 }
 
 /// One stage: cut, relax, dissolve what no longer pays. Where no cut pays by itself, several
-/// together may: then all clusters are cut, some times over, before the result is judged.
+/// together may: while clusters are few, all clusters are then cut, some times over, before the
+/// result is judged.
 BoxClustering next_stage(const BoxProblem& problem, const BoxClustering& clustering,
                          const BoxGrowthOptions& options) {
   BoxClustering next = cut_and_relaxed(problem, clustering, options, options.least_cut_gain);
-  for (int leap = 0; leap < options.leaps && !(next.cost < clustering.cost); ++leap)
+  const int leaps = clustering.cluster_count() <= kFewClusters ? options.leaps : 0;
+  for (int leap = 0; leap < leaps && !(next.cost < clustering.cost); ++leap)
     next = cut_and_relaxed(problem, next, options, -std::numeric_limits<double>::infinity());
   const std::uint32_t before = next.cluster_count();
   if (before == clustering.cluster_count()) return clustering;

@@ -136,6 +136,7 @@ KeyMaps fit_small_boxes(const PoseSequence& sequence, const ClusterMembers& memb
          areas_at_all_times(sequence, members, plain.local_from_world, measure.model_areas))
       plain.box_area += a;
   }
+  plain.residual = residual_stats(sequence, members, plain.local_from_world, request.rest_key);
   return plain;
 }
 
@@ -156,13 +157,16 @@ KeyMaps fit_key_maps(const PoseSequence& sequence, const ClusterMembers& members
         result.local_from_world[static_cast<std::size_t>(first + row) * clusters + c] =
             to_float(world_map(table, row, local_from_rest[c] * maps.of(c)[row]));
   }
+  result.residual = residual_stats(sequence, members, result.local_from_world, request.rest_key);
   return result;
 }
 
-KeyMaps identity_key_maps(const PoseSequence& sequence, const ClusterMembers& members) {
+KeyMaps identity_key_maps(const PoseSequence& sequence, const ClusterMembers& members,
+                          std::uint32_t rest_key) {
   KeyMaps result;
   result.local_from_world.resize(static_cast<std::size_t>(sequence.key_count()) *
                                  members.cluster_count());
+  result.residual = residual_stats(sequence, members, result.local_from_world, rest_key);
   return result;
 }
 

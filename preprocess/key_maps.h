@@ -20,6 +20,7 @@ struct ResidualStats {
 struct KeyMaps {
   double box_area = 0;  ///< of all fuzzy boxes at all times, mean share of the model's (cost.h)
   std::vector<Affine3f> local_from_world;  ///< F * K, key-major
+  ResidualStats residual;
   double refine_gain = 0;  ///< share by which refinement lowered the summed area of the fuzzy boxes
 };
 
@@ -43,12 +44,8 @@ KeyMaps fit_key_maps(const PoseSequence& sequence, const ClusterMembers& members
                      const KeyMapRequest& request, std::span<const Affine3d> local_from_rest);
 
 /// Identity maps for every key: local boxes are world boxes.
-KeyMaps identity_key_maps(const PoseSequence& sequence, const ClusterMembers& members);
-
-/// Residuals of any maps: local positions taken back to the world by the cluster's map at the rest
-/// key, and compared with the rest pose. Cost: O(keys * vertices).
-ResidualStats residual_stats(const PoseSequence& sequence, const ClusterMembers& members,
-                             std::span<const Affine3f> local_from_world, std::uint32_t rest_key);
+KeyMaps identity_key_maps(const PoseSequence& sequence, const ClusterMembers& members,
+                          std::uint32_t rest_key);
 
 /// Residuals of any maps: local positions taken back to the world by the cluster's map at the rest
 /// key, and compared with the rest pose. Cost: O(keys * vertices).

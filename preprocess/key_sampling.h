@@ -2,13 +2,10 @@
 // the extreme poses that uniform subsampling walks past.
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <vector>
 
 #include "common/motion/pose_sequence.h"
-#include "preprocess/pose_table.h"
 
 namespace mdk {
 
@@ -22,9 +19,5 @@ struct KeySamplingOptions {
 /// the key farthest from the mean pose. Cost: O(keys * count * points).
 std::vector<std::uint32_t> sample_keys(const PoseSequence& sequence,
                                        const KeySamplingOptions& options);
-
-/// The poses of about `count` sampled keys, and of key `also` if there is one.
-PoseTable sampled_table(const PoseSequence& sequence, std::size_t count,
-                        std::optional<std::uint32_t> also, double unit);
 
 }  // namespace mdk

@@ -144,6 +144,16 @@ RoughClusters rough_clusters(const MovingMesh& mesh, const DecomposeOptions& opt
 
 }  // namespace
 
+PoseTable sampled_table(const PoseSequence& sequence, std::size_t count,
+                        std::optional<std::uint32_t> also, double unit) {
+  KeySamplingOptions sampling;
+  sampling.count = static_cast<std::uint32_t>(std::min<std::size_t>(count, sequence.key_count()));
+  std::vector<std::uint32_t> keys = sample_keys(sequence, sampling);
+  if (also && !std::binary_search(keys.begin(), keys.end(), *also))
+    keys.insert(std::lower_bound(keys.begin(), keys.end(), *also), *also);
+  return make_pose_table(sequence, keys, unit);
+}
+
 MotionClusters cluster_by_boxes(const PoseSequence& sequence, const DecomposeOptions& options,
                                 double unit, ProgressSink& progress) {
   const VertexTriangles neighbors =

@@ -2,7 +2,9 @@
 // in GFW06, by residual motion.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,6 +12,7 @@
 #include "common/math/affine3.h"
 #include "common/motion/pose_sequence.h"
 #include "preprocess/pipeline.h"
+#include "preprocess/pose_table.h"
 
 namespace mdk {
 
@@ -21,6 +24,10 @@ struct MotionClusters {
   std::vector<ClusteringStep> steps;      ///< residuals in units of `unit`
   std::vector<Affine3d> local_from_rest;  ///< K, by residual motion alone: the local bases
 };
+
+/// A table of up to `count` keys, farthest-point sampled, and of `also`.
+PoseTable sampled_table(const PoseSequence& sequence, std::size_t count,
+                        std::optional<std::uint32_t> also, double unit);
 
 /// Grown on a farthest-point sample of the keys, and of the triangles of large meshes; relaxed on
 /// all triangles and as many keys as a work budget allows. `unit`: see pose_unit.

@@ -14,7 +14,6 @@
 #include "preprocess/bone_clusters.h"
 #include "preprocess/bone_maps.h"
 #include "preprocess/key_maps.h"
-#include "preprocess/key_sampling.h"
 #include "preprocess/model_assembly.h"
 #include "preprocess/motion_clusters.h"
 #include "preprocess/pose_space.h"
@@ -28,7 +27,7 @@ constexpr std::uint32_t kMaxClusters = 1024;
 constexpr double kDecomposedAt = 0.85;  // share of the whole job, for progress alone
 constexpr double kClusteredAt = 0.8, kMappedAt = 0.95;  // shares of the decomposition
 constexpr double kWildGrowth = 1.5;                     // of the boxes from keys to all times
-constexpr std::size_t kBoneEntries = 2'000'000;  // keys times vertices that bones are chosen on
+constexpr std::size_t kBoneEntries = 2'000'000;  // keys (times vertices) that bones are chosen on
 constexpr std::size_t kMinBoneKeys = 10, kMaxBoneKeys = 200;
 constexpr float kLargestCoordinate = 1e15f;  // areas and volumes must stay far inside float
 
@@ -115,33 +114,17 @@ DecomposeStats make_stats(const MotionClusters& decision, const AssembledModel& 
   return stats;
 }
 
-KeyMaps decide_maps(const PoseSequence& sequence, const MotionClusters& decision,
-                    const ClusterMembers& members, const DecomposeOptions& options,
-                    ProgressSink& progress) {
-  if (options.mode == DecomposeMode::kNone) return identity_key_maps(sequence, members);
-  const KeyMapRequest request{decision.rest_key, pose_unit(sequence), options.refine};
-  if (options.stop_percent && !options.refine)
-    return fit_key_maps(sequence, members, request, decision.local_from_rest);
-  return fit_small_boxes(sequence, members, request, [&](double share) {
-    progress.report("decompose", kClusteredAt + (kMappedAt - kClusteredAt) * share);
-  });
-}
-
 /// A sequence taken apart.
 struct Decomposition {
   MotionClusters clusters;
   ClusterMembers members;
   KeyMaps maps;
-  std::vector<ClusterBone> bones;  ///< K, of bones' clusters
+  std::vector<ClusterBone> cluster_bones;  ///< K with bones, else none
 };
 
-Decomposition with_maps(const PoseSequence& sequence, MotionClusters clusters,
-                        const DecomposeOptions& options, ProgressSink& progress) {
-  Decomposition result{std::move(clusters), {}, {}, {}};
-  result.members = make_cluster_members(sequence.triangles, result.clusters.cluster_of_triangle,
-                                        result.clusters.cluster_count, sequence.vertex_count);
-  result.maps = decide_maps(sequence, result.clusters, result.members, options, progress);
-  return result;
+ClusterMembers members_of(const PoseSequence& sequence, const MotionClusters& clusters) {
+  return make_cluster_members(sequence.triangles, clusters.cluster_of_triangle,
+                              clusters.cluster_count, sequence.vertex_count);
 }
 
 void set_limits(Skeleton& skeleton, double degrees) {
@@ -154,35 +137,52 @@ PoseSpace pose_space_of(const PoseSequence& sequence) {
   return {sequence.skeleton->view(), sequence.rig->view(), sequence.key_count()};
 }
 
-Decomposition follow_bones(const PoseSequence& sequence, const DecomposeOptions& options,
+Decomposition decide_bones(const PoseSequence& sequence, const DecomposeOptions& options,
                            double unit) {
   Decomposition result;
   result.clusters.rest_key = options.rest_key.value_or(0);
   result.clusters.stop_reason = "bones";
-  const std::size_t affordable = kBoneEntries / std::max(1u, sequence.vertex_count);
-  const PoseTable table = sampled_table(
-      sequence, std::clamp(affordable, kMinBoneKeys, kMaxBoneKeys), result.clusters.rest_key, unit);
+  const std::size_t keys =
+      std::clamp(kBoneEntries / std::max(1u, sequence.vertex_count), kMinBoneKeys, kMaxBoneKeys);
+  const PoseTable table = sampled_table(sequence, keys, result.clusters.rest_key, unit);
   std::optional<PoseSpace> space;
   if (sequence.skeleton) space = pose_space_of(sequence);
-  BoneClusters clusters = assign_to_bones(sequence, table.keys, space ? &*space : nullptr);
-  result.clusters.cluster_count = static_cast<std::uint32_t>(clusters.bones.size());
-  result.clusters.cluster_of_triangle = std::move(clusters.cluster_of_triangle);
-  result.members = make_cluster_members(sequence.triangles, result.clusters.cluster_of_triangle,
-                                        result.clusters.cluster_count, sequence.vertex_count);
-  result.bones = choose_bone_bases(sequence, table, result.members, clusters.bones);
-  result.maps = bone_key_maps(sequence, result.bones);
+  BoneClusters bones = assign_to_bones(sequence, table.keys, space ? &*space : nullptr);
+  result.clusters.cluster_count = static_cast<std::uint32_t>(bones.bones.size());
+  result.clusters.cluster_of_triangle = std::move(bones.cluster_of_triangle);
+  result.members = members_of(sequence, result.clusters);
+  result.cluster_bones = choose_bone_bases(sequence, table, result.members, bones.bones);
+  result.maps =
+      bone_key_maps(sequence, result.members, result.cluster_bones, result.clusters.rest_key);
   return result;
 }
 
-Decomposition decide(const PoseSequence& sequence, const DecomposeOptions& options, double unit,
-                     ProgressSink& progress) {
-  if (options.mode == DecomposeMode::kBones) return follow_bones(sequence, options, unit);
-  if (options.mode == DecomposeMode::kNone) {
-    MotionClusters one;
-    one.rest_key = options.rest_key.value_or(0);
-    one.cluster_of_triangle.assign(sequence.triangles.size(), 0);
-    return with_maps(sequence, std::move(one), options, progress);
-  }
+Decomposition decide_nothing(const PoseSequence& sequence, const DecomposeOptions& options) {
+  Decomposition result;
+  result.clusters.rest_key = options.rest_key.value_or(0);
+  result.clusters.cluster_of_triangle.assign(sequence.triangles.size(), 0);
+  result.members = members_of(sequence, result.clusters);
+  result.maps = identity_key_maps(sequence, result.members, result.clusters.rest_key);
+  return result;
+}
+
+Decomposition with_maps(const PoseSequence& sequence, MotionClusters clusters,
+                        const DecomposeOptions& options, ProgressSink& progress) {
+  Decomposition result;
+  result.clusters = std::move(clusters);
+  result.members = members_of(sequence, result.clusters);
+  const KeyMapRequest request{result.clusters.rest_key, pose_unit(sequence), options.refine};
+  result.maps =
+      options.stop_percent && !options.refine
+          ? fit_key_maps(sequence, result.members, request, result.clusters.local_from_rest)
+          : fit_small_boxes(sequence, result.members, request, [&](double share) {
+              progress.report("decompose", kClusteredAt + (kMappedAt - kClusteredAt) * share);
+            });
+  return result;
+}
+
+Decomposition decide_motion(const PoseSequence& sequence, const DecomposeOptions& options,
+                            double unit, ProgressSink& progress) {
   if (options.stop_percent)
     return with_maps(sequence, cluster_by_residuals(sequence, options, unit, progress), options,
                      progress);
@@ -197,6 +197,19 @@ Decomposition decide(const PoseSequence& sequence, const DecomposeOptions& optio
     if (calm.maps.box_area < result.maps.box_area) result = std::move(calm);
   }
   return result;
+}
+
+Decomposition decide(const PoseSequence& sequence, const DecomposeOptions& options, double unit,
+                     ProgressSink& progress) {
+  switch (options.mode) {
+    case DecomposeMode::kMotion:
+      return decide_motion(sequence, options, unit, progress);
+    case DecomposeMode::kBones:
+      return decide_bones(sequence, options, unit);
+    case DecomposeMode::kNone:
+      break;
+  }
+  return decide_nothing(sequence, options);
 }
 
 }  // namespace
@@ -214,19 +227,15 @@ DecomposeResult decompose(PoseSequence sequence, const DecomposeOptions& options
     sequence.skeleton.reset();
   }
   Decomposition decided = decide(sequence, options, unit, decomposing);
-  const MotionClusters& decision = decided.clusters;
-  const ClusterMembers& members = decided.members;
-  KeyMaps& maps = decided.maps;
-  const ResidualStats residual =
-      residual_stats(sequence, members, maps.local_from_world, decision.rest_key);
-  decomposing.report("decompose", 0.95);
   ModelParts parts;
-  parts.local_from_world = std::move(maps.local_from_world);
-  parts.rest_key = decision.rest_key;
+  parts.local_from_world = std::move(decided.maps.local_from_world);
+  parts.rest_key = decided.clusters.rest_key;
+  decomposing.report("decompose", kMappedAt);
   if (sequence.skeleton) {
     parts.segments = {{0, sequence.key_count() - 1}};  // a pose space has no time
-    parts.pose_space_boxes = pose_space_boxes(pose_space_of(sequence), members, decided.bones);
-    parts.cluster_bones = std::move(decided.bones);
+    parts.cluster_bones = decided.cluster_bones;
+    parts.pose_space_boxes =
+        pose_space_boxes(pose_space_of(sequence), decided.members, decided.cluster_bones);
   } else {
     parts.segments = choose_segments(sequence, decided.members, parts.local_from_world,
                                      {.count = options.segments});
@@ -236,10 +245,10 @@ DecomposeResult decompose(PoseSequence sequence, const DecomposeOptions& options
 
   ProgressPart building(progress, kDecomposedAt, 1);
   AssembledModel assembled =
-      assemble_model(std::move(sequence), members, std::move(parts), building);
+      assemble_model(std::move(sequence), decided.members, std::move(parts), building);
   DecomposeResult result;
-  result.stats = make_stats(decision, assembled, residual, unit);
-  result.stats.refine_gain = maps.refine_gain;
+  result.stats = make_stats(decided.clusters, assembled, decided.maps.residual, unit);
+  result.stats.refine_gain = decided.maps.refine_gain;
   result.stats.notes = segment_notes(options, assembled.model.segments.size());
   result.stats.decompose_seconds = decompose_seconds;
   result.stats.build_seconds = watch.seconds();

@@ -85,10 +85,6 @@ DecomposeOptions parse_decompose_options(const BakeArguments& arguments) {
   if (arguments.segments != "auto")
     options.segments = parse_count("--segments", arguments.segments, {});
 
-  if (arguments.refine != "on" && arguments.refine != "off")
-    throw Error(ErrorCode::kUsage, "--refine " + arguments.refine + ": expected on or off");
-  options.refine = arguments.refine == "on";
-
   parse_bone_options(arguments, options);
   if (arguments.refine != "on" && arguments.refine != "off")
     throw Error(ErrorCode::kUsage, "--refine " + arguments.refine + ": expected on or off");
