@@ -205,8 +205,9 @@ TEST(GltfSkin, KeepsTheSkeletonThatItsBonesHangOnWhereItIsAskedFor) {
   const SkeletonView skeleton = sequence.skeleton->view();
   std::vector<std::string> names;
   for (const Joint& joint : skeleton.joints) names.emplace_back(skeleton.name(joint));
-  EXPECT_THAT(names, testing::ElementsAre("root", "arm", "hand", ""));
-  EXPECT_EQ(skeleton.joints[2].parent, 1u);
+  EXPECT_THAT(names, testing::UnorderedElementsAre("root", "arm", "hand", ""));
+  for (const Joint& joint : skeleton.joints)
+    if (skeleton.name(joint) == "hand") EXPECT_EQ(names[joint.parent], "arm");
   const SkeletonPose rest{std::vector<Vec3d>(4), {}};
   EXPECT_EQ(bone_maps(skeleton, rest), sequence.rig->bone_maps)
       << "unturned, the bones are the file's";
