@@ -37,7 +37,8 @@ void draw_technique_row(std::size_t row, const Theme& theme, ViewState& state, U
   const TechniqueInfo& info = technique_table()[row];
   const std::string id(info.id), label(info.label);
   const ImVec2 corner = ImGui::GetCursorScreenPos();
-  const float width = ImGui::GetContentRegionAvail().x, height = ImGui::GetFrameHeight();
+  const float width = ImGui::GetContentRegionAvail().x;
+  const float height = ImGui::GetTextLineHeight() + 3 * theme.scale;
   ImGui::PushID(id.c_str());
   if (ImGui::Selectable("##technique", state.settings.technique == row, 0, {width, height}))
     state.settings.technique = row;
@@ -203,10 +204,10 @@ void draw_side_panel(const Rect& place, const Theme& theme, ViewState& state, Ui
   draw_file_facts(theme, state);
   draw_techniques(theme, state, result);
   draw_shading(theme, state, result);
-  draw_frame_times(theme, state);
-  draw_history(theme, state, result);
-  draw_work(theme, state, result);
   draw_view(theme, state, result);
+  draw_frame_times(theme, state);
+  draw_work(theme, state, result);
+  draw_history(theme, state, result);
   ImGui::End();
 }
 

@@ -18,7 +18,7 @@ PoseSequence sample_sequence() {
 ModelStorage sample_model() {
   DecomposeOptions options;
   options.clusters = 3;
-  options.segments = 2;
+  options.segments = 3;  // of two clips: one cut at least is inside a clip
   SilentProgress silent;
   return decompose(sample_sequence(), options, silent).model;
 }

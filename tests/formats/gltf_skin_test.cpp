@@ -206,8 +206,11 @@ TEST(GltfSkin, KeepsTheSkeletonThatItsBonesHangOnWhereItIsAskedFor) {
   std::vector<std::string> names;
   for (const Joint& joint : skeleton.joints) names.emplace_back(skeleton.name(joint));
   EXPECT_THAT(names, testing::UnorderedElementsAre("root", "arm", "hand", ""));
-  for (const Joint& joint : skeleton.joints)
-    if (skeleton.name(joint) == "hand") EXPECT_EQ(names[joint.parent], "arm");
+  for (const Joint& joint : skeleton.joints) {
+    if (skeleton.name(joint) == "hand") {
+      EXPECT_EQ(names[joint.parent], "arm");
+    }
+  }
   const SkeletonPose rest{std::vector<Vec3d>(4), {}};
   EXPECT_EQ(bone_maps(skeleton, rest), sequence.rig->bone_maps)
       << "unturned, the bones are the file's";
