@@ -29,23 +29,25 @@ using FloatTag = hn::CappedTag<float, kBvhWidth>;
 using DoubleTag = hn::CappedTag<double, kBvhWidth>;
 using DoubleVec = hn::Vec<DoubleTag>;
 
-struct Points {
+/// One point per lane. Not `Points`: the tile kernels have another type of that name in this
+/// namespace.
+struct DoublePoints {
   DoubleVec x, y, z;
 };
 
-HWY_INLINE Points subtract(const Points& a, const Points& b) {
+HWY_INLINE DoublePoints subtract(const DoublePoints& a, const DoublePoints& b) {
   return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)};
 }
-HWY_INLINE Points add(const Points& a, const Points& b) {
+HWY_INLINE DoublePoints add(const DoublePoints& a, const DoublePoints& b) {
   return {hn::Add(a.x, b.x), hn::Add(a.y, b.y), hn::Add(a.z, b.z)};
 }
-HWY_INLINE Points scale(const Points& a, DoubleVec s) {
+HWY_INLINE DoublePoints scale(const DoublePoints& a, DoubleVec s) {
   return {hn::Mul(a.x, s), hn::Mul(a.y, s), hn::Mul(a.z, s)};
 }
-HWY_INLINE DoubleVec dot_product(const Points& a, const Points& b) {
+HWY_INLINE DoubleVec dot_product(const DoublePoints& a, const DoublePoints& b) {
   return hn::Add(hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)), hn::Mul(a.z, b.z));
 }
-HWY_INLINE DoubleVec sum_of_sizes(const Points& a) {
+HWY_INLINE DoubleVec sum_of_sizes(const DoublePoints& a) {
   return hn::Add(hn::Add(hn::Abs(a.x), hn::Abs(a.y)), hn::Abs(a.z));
 }
 
@@ -55,12 +57,12 @@ struct Weight {
 };
 
 /// ((b - a) x (b + a)) . d; `rounding` is kRounding times the largest component of d.
-HWY_INLINE Weight edge_weight(const Points& a, const Points& b, const Points& d,
+HWY_INLINE Weight edge_weight(const DoublePoints& a, const DoublePoints& b, const DoublePoints& d,
                               DoubleVec rounding) {
-  const Points u = subtract(b, a), v = add(b, a);
-  const Points n{hn::Sub(hn::Mul(u.y, v.z), hn::Mul(u.z, v.y)),
-                 hn::Sub(hn::Mul(u.z, v.x), hn::Mul(u.x, v.z)),
-                 hn::Sub(hn::Mul(u.x, v.y), hn::Mul(u.y, v.x))};
+  const DoublePoints u = subtract(b, a), v = add(b, a);
+  const DoublePoints n{hn::Sub(hn::Mul(u.y, v.z), hn::Mul(u.z, v.y)),
+                       hn::Sub(hn::Mul(u.z, v.x), hn::Mul(u.x, v.z)),
+                       hn::Sub(hn::Mul(u.x, v.y), hn::Mul(u.y, v.x))};
   return {dot_product(n, d), hn::Mul(hn::Mul(sum_of_sizes(u), sum_of_sizes(v)), rounding)};
 }
 
@@ -141,7 +143,7 @@ class RayWalk {
     return size;
   }
 
-  HWY_INLINE Points corner(const std::uint32_t* index) const {
+  HWY_INLINE DoublePoints corner(const std::uint32_t* index) const {
     const DoubleTag d;
     alignas(64) double x[kBvhWidth], y[kBvhWidth], z[kBvhWidth];
     for (std::size_t i = 0; i < hn::Lanes(d); ++i) {
@@ -155,10 +157,10 @@ class RayWalk {
 
   HWY_INLINE void test_lanes(const TriangleBlock& block, std::size_t first) {
     const DoubleTag d;
-    const Points a = corner(block.corner[0] + first), b = corner(block.corner[1] + first),
-                 c = corner(block.corner[2] + first);
-    const Points direction{hn::Set(d, ray_.direction.x), hn::Set(d, ray_.direction.y),
-                           hn::Set(d, ray_.direction.z)};
+    const DoublePoints a = corner(block.corner[0] + first), b = corner(block.corner[1] + first),
+                       c = corner(block.corner[2] + first);
+    const DoublePoints direction{hn::Set(d, ray_.direction.x), hn::Set(d, ray_.direction.y),
+                                 hn::Set(d, ray_.direction.z)};
     const auto rounding = hn::Set(d, rounding_);
     const Weight wa = edge_weight(b, c, direction, rounding),
                  wb = edge_weight(c, a, direction, rounding),
@@ -175,9 +177,9 @@ class RayWalk {
     const auto sa = share_of(wa), sb = share_of(wb), sc = share_of(wc);
     const auto total = hn::Add(hn::Add(sa, sb), sc);
     const auto share = hn::Div(hn::Set(d, 1.0), total);
-    const Points p = scale(add(add(scale(a, sa), scale(b, sb)), scale(c, sc)), share);
+    const DoublePoints p = scale(add(add(scale(a, sa), scale(b, sb)), scale(c, sc)), share);
     const auto t = hn::Div(dot_product(p, direction), hn::Set(d, direction_square_));
-    const Points off = subtract(p, scale(direction, t));
+    const DoublePoints off = subtract(p, scale(direction, t));
     const auto close =
         hn::Le(dot_product(off, off), hn::Mul(dot_product(p, p), hn::Set(d, 0x1p-40)));
     // Written so that a corner that is not a number fails it.
