@@ -8,6 +8,13 @@ void BvhTechnique::update(const PosedMesh& mesh) {
   follow(mesh.model());
 }
 
+WideBvh BvhTechnique::build_over_rest_pose(const Model& model, int bins) {
+  PosedMesh rest(model);
+  rest.set_time(at_key(model.rest_key));
+  triangle_boxes(rest, boxes_);
+  return build_wide_bvh(boxes_, bins);
+}
+
 void BvhTechnique::set_tree(WideBvh&& bvh, const Model& model) {
   bvh_ = std::move(bvh);
   blocks_.clear();

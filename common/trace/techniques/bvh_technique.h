@@ -23,6 +23,9 @@ class BvhTechnique : public Technique {
   /// Makes the hierarchy valid for boxes_, the present triangles' boxes.
   virtual void follow(const Model& model) = 0;
 
+  /// A hierarchy over the model's rest pose. Leaves its boxes in boxes_.
+  WideBvh build_over_rest_pose(const Model& model, int bins);
+
   /// The hierarchy gets other leaves.
   void set_tree(WideBvh&& bvh, const Model& model);
 

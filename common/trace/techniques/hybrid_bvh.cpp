@@ -18,11 +18,7 @@ class HybridBvhTechnique final : public BvhTechnique {
   using BvhTechnique::BvhTechnique;
 
   void prebuild(const PosedMesh& mesh) override {
-    if (!bvh_.nodes.empty()) return;
-    PosedMesh rest(mesh.model());
-    rest.set_time(at_key(mesh.model().rest_key));
-    triangle_boxes(rest, boxes_);
-    adopt(build_wide_bvh(boxes_, kFirstBins), mesh.model());
+    if (bvh_.nodes.empty()) adopt(build_over_rest_pose(mesh.model(), kFirstBins), mesh.model());
   }
 
  private:

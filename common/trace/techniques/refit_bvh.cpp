@@ -9,11 +9,7 @@ class RefitBvhTechnique final : public BvhTechnique {
   using BvhTechnique::BvhTechnique;
 
   void prebuild(const PosedMesh& mesh) override {
-    if (!bvh_.nodes.empty()) return;
-    PosedMesh rest(mesh.model());
-    rest.set_time(at_key(mesh.model().rest_key));
-    triangle_boxes(rest, boxes_);
-    set_tree(build_wide_bvh(boxes_, 1024), mesh.model());
+    if (bvh_.nodes.empty()) set_tree(build_over_rest_pose(mesh.model(), 1024), mesh.model());
   }
 
  private:
