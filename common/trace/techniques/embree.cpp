@@ -1,9 +1,12 @@
-// Embree as a peer: the field's best known kernels on the same triangles, in robust mode, with
-// packets of coherent rays as wide as the machine takes. Its triangle test is another one, so its
-// hits agree with brute force's in depth, not in every bit. Everything of Embree stays in this
-// file.
+// Embree as a peer: the field's best known kernels on the same triangles, in robust mode. A tile is
+// a stream of sixteen coherent packets of sixteen rays, which Embree takes at once and culls
+// together: of all it offers, this measures fastest (docs/kernels.md, Embree). Its triangle test is
+// another one, so its hits agree with brute force's in depth, not in every bit. Everything of
+// Embree stays in this file.
 #include <embree3/rtcore.h>
+#include <tbb/enumerable_thread_specific.h>
 
+#include <algorithm>
 #include <atomic>
 #include <limits>
 #include <string>
@@ -19,12 +22,14 @@ namespace {
 /// How the hierarchy follows the pose.
 enum class EmbreeMode { kRefit, kLow, kMedium };
 
-/// No wider vectors than our own kernels may use. Threads are those of oneTBB, which both share.
+/// Vectors as wide as our own kernels may use, and no wider; left alone, Embree keeps to narrow
+/// ones on machines whose clock wide ones slowed down once. Threads are those of oneTBB, which both
+/// share.
 std::string device_config() {
   const std::string_view isa = isa_in_use();
   if (isa == "sse4" || isa == "scalar") return "isa=sse4.2";
-  if (isa == "avx2") return "isa=avx2";
-  return "";
+  if (isa == "avx2") return "isa=avx2,frequency_level=simd256";
+  return "frequency_level=simd512";
 }
 
 void require_success(RTCDevice device) {
@@ -35,70 +40,116 @@ void require_success(RTCDevice device) {
   throw Error(ErrorCode::kInternal, "Embree fails with its error " + std::to_string(error));
 }
 
-/// What a packet of N rays is made of: Embree has a type and a function for each N.
-template <int N>
-struct Packet;
-template <>
-struct Packet<4> {
-  using RayHit = RTCRayHit4;
-  static constexpr std::uint32_t kWidth = 2, kHeight = 2;
-  static constexpr auto kIntersect = rtcIntersect4;
-};
-template <>
-struct Packet<8> {
-  using RayHit = RTCRayHit8;
-  static constexpr std::uint32_t kWidth = 4, kHeight = 2;
-  static constexpr auto kIntersect = rtcIntersect8;
-};
-template <>
-struct Packet<16> {
-  using RayHit = RTCRayHit16;
-  static constexpr std::uint32_t kWidth = 4, kHeight = 4;
-  static constexpr auto kIntersect = rtcIntersect16;
+constexpr std::uint32_t kWidth = 16;                      // rays of a packet
+constexpr std::uint32_t kPackets = kTilePixels / kWidth;  // of a tile
+constexpr std::uint32_t kSide = 4;                        // of a packet's square of pixels
+constexpr std::uint32_t kSquaresPerRow = kTileSide / kSide;
+static_assert(kSide * kSide == kWidth && kSquaresPerRow * kSquaresPerRow == kPackets);
+
+/// A tile's rays as Embree wants them: 4x4 pixels a packet, packets row by row. What no ray of a
+/// picture changes is written once.
+class TilePackets {
+ public:
+  TilePackets() {
+    for (RTCRayHit16& packet : packets_)
+      for (std::uint32_t i = 0; i < kWidth; ++i) {
+        packet.ray.tnear[i] = 0;
+        packet.ray.time[i] = 0;
+        packet.ray.mask[i] = ~0u;
+        packet.ray.id[i] = 0;
+        packet.ray.flags[i] = 0;
+        packet.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
+      }
+    for (std::uint32_t i = 0; i < kWidth; ++i) {
+      column_[i] = static_cast<float>(i % kSide) + 0.5f;
+      row_[i] = static_cast<float>(i / kSide) + 0.5f;
+    }
+  }
+
+  void trace(RTCScene scene, const TileRays& tile, TileHits& hits) {
+    if (!(tile.rays->origin == origin_)) set_origin(tile.rays->origin);
+    for (std::uint32_t p = 0; p < kPackets; ++p) aim(packets_[p], tile, p);
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    rtcIntersectNM(scene, &context, reinterpret_cast<RTCRayHitN*>(packets_), kWidth, kPackets,
+                   sizeof(RTCRayHit16));
+    for (std::uint32_t p = 0; p < kPackets; ++p) read_back(packets_[p], p, hits);
+  }
+
+ private:
+  void set_origin(const Vec3f& origin) {
+    origin_ = origin;
+    for (RTCRayHit16& packet : packets_)
+      for (std::uint32_t i = 0; i < kWidth; ++i) {
+        packet.ray.org_x[i] = origin.x;
+        packet.ray.org_y[i] = origin.y;
+        packet.ray.org_z[i] = origin.z;
+      }
+  }
+
+  void aim(RTCRayHit16& packet, const TileRays& tile, std::uint32_t p) const {
+    const PinholeRays& rays = *tile.rays;
+    const auto left = static_cast<float>(tile.x + p % kSquaresPerRow * kSide);
+    const auto top = static_cast<float>(tile.y + p / kSquaresPerRow * kSide);
+    const auto fill = [&](float* out, float corner, float du, float dv) {
+      for (std::uint32_t i = 0; i < kWidth; ++i)
+        out[i] = corner + du * (left + column_[i]) + dv * (top + row_[i]);
+    };
+    fill(packet.ray.dir_x, rays.corner.x, rays.du.x, rays.dv.x);
+    fill(packet.ray.dir_y, rays.corner.y, rays.du.y, rays.dv.y);
+    fill(packet.ray.dir_z, rays.corner.z, rays.du.z, rays.dv.z);
+    std::fill_n(packet.ray.tfar, kWidth, std::numeric_limits<float>::infinity());
+    std::fill_n(packet.hit.geomID, kWidth, RTC_INVALID_GEOMETRY_ID);
+  }
+
+  static void read_back(const RTCRayHit16& packet, std::uint32_t p, TileHits& hits) {
+    bool some = false;
+    for (std::uint32_t i = 0; i < kWidth; ++i) some |= packet.hit.geomID[i] == 0;
+    if (!some) return;
+    hits.written = true;
+    const std::uint32_t first = p / kSquaresPerRow * kSide * kTileSide + p % kSquaresPerRow * kSide;
+    for (std::uint32_t i = 0; i < kWidth; ++i) {
+      if (packet.hit.geomID[i] != 0) continue;  // the only geometry is number 0
+      const std::uint32_t pixel = first + i / kSide * kTileSide + i % kSide;
+      hits.t[pixel] = packet.ray.tfar[i];
+      hits.triangle[pixel] = packet.hit.primID[i];
+    }
+  }
+
+  alignas(64) RTCRayHit16 packets_[kPackets];
+  float column_[kWidth], row_[kWidth];
+  Vec3f origin_{std::numeric_limits<float>::quiet_NaN(), 0, 0};
 };
 
-template <int N>
-void trace_packets(RTCScene scene, const TileRays& tile, TileHits& hits) {
-  using P = Packet<N>;
-  alignas(64) typename P::RayHit packet;
-  alignas(64) int valid[N];
-  const PinholeRays& rays = *tile.rays;
-  for (int i = 0; i < N; ++i) {
-    valid[i] = -1;
-    packet.ray.org_x[i] = rays.origin.x;
-    packet.ray.org_y[i] = rays.origin.y;
-    packet.ray.org_z[i] = rays.origin.z;
-    packet.ray.tnear[i] = 0;
-    packet.ray.time[i] = 0;
-    packet.ray.mask[i] = ~0u;
-    packet.ray.id[i] = 0;
-    packet.ray.flags[i] = 0;
-    packet.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
+/// The part of the image a box may be seen in, in pixels.
+struct ImageBounds {
+  float left, right, top, bottom;
+
+  bool meets(const TileRays& tile) const {
+    const auto x = static_cast<float>(tile.x), y = static_cast<float>(tile.y);
+    return x <= right && x + kTileSide >= left && y <= bottom && y + kTileSide >= top;
   }
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-  for (std::uint32_t top = 0; top < kTileSide; top += P::kHeight)
-    for (std::uint32_t left = 0; left < kTileSide; left += P::kWidth) {
-      for (std::uint32_t i = 0; i < N; ++i) {
-        const std::uint32_t x = tile.x + left + i % P::kWidth, y = tile.y + top + i / P::kWidth;
-        const Vec3f direction =
-            rays.direction(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);
-        packet.ray.dir_x[i] = direction.x;
-        packet.ray.dir_y[i] = direction.y;
-        packet.ray.dir_z[i] = direction.z;
-        packet.ray.tfar[i] = std::numeric_limits<float>::infinity();
-        packet.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
-      }
-      P::kIntersect(valid, scene, &context, &packet);
-      for (std::uint32_t i = 0; i < N; ++i) {
-        if (packet.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) continue;
-        const std::uint32_t pixel = (top + i / P::kWidth) * kTileSide + left + i % P::kWidth;
-        hits.t[pixel] = packet.ray.tfar[i];
-        hits.triangle[pixel] = packet.hit.primID[i];
-        hits.written = true;
-      }
-    }
+};
+
+/// All of the image where the box reaches behind the eye.
+ImageBounds image_bounds(const RTCBounds& box, const PinholeRays& rays) {
+  constexpr float kInfinite = std::numeric_limits<float>::infinity();
+  constexpr float kRounding = 1;  // pixels, far more than it can be
+  const PixelFromWorld map = make_pixel_from_world(rays);
+  const float x[] = {box.lower_x, box.upper_x}, y[] = {box.lower_y, box.upper_y},
+              z[] = {box.lower_z, box.upper_z};
+  ImageBounds bounds{kInfinite, -kInfinite, kInfinite, -kInfinite};
+  for (int corner = 0; corner < 8; ++corner) {
+    const Vec3f v = Vec3f{x[corner & 1], y[corner >> 1 & 1], z[corner >> 2]} - map.origin;
+    const auto row = [&](const float* m) { return m[0] * v.x + m[1] * v.y + m[2] * v.z; };
+    const float depth = row(map.m[2]);
+    if (!(depth > 0)) return {-kInfinite, kInfinite, -kInfinite, kInfinite};
+    const float across = row(map.m[0]) / depth, down = row(map.m[1]) / depth;
+    bounds = {std::min(bounds.left, across - kRounding), std::max(bounds.right, across + kRounding),
+              std::min(bounds.top, down - kRounding), std::max(bounds.bottom, down + kRounding)};
+  }
+  return bounds;
 }
 
 class EmbreeTechnique final : public Technique {
@@ -107,9 +158,6 @@ class EmbreeTechnique final : public Technique {
       : model_(model), mode_(mode), device_(rtcNewDevice(device_config().c_str())) {
     require_success(device_);
     rtcSetDeviceMemoryMonitorFunction(device_, count_bytes, &bytes_);
-    const bool wide = rtcGetDeviceProperty(device_, RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED);
-    const bool medium = rtcGetDeviceProperty(device_, RTC_DEVICE_PROPERTY_NATIVE_RAY8_SUPPORTED);
-    trace_ = wide ? trace_packets<16> : medium ? trace_packets<8> : trace_packets<4>;
     make_scene();
   }
   ~EmbreeTechnique() override {
@@ -133,8 +181,13 @@ class EmbreeTechnique final : public Technique {
     require_success(device_);
     built_ = true;
   }
+  void set_view(const PinholeRays& rays) override {
+    RTCBounds box;
+    rtcGetSceneBounds(scene_, &box);
+    bounds_ = image_bounds(box, rays);
+  }
   void trace(const TileRays& tile, TileHits& hits, TileScratch&, TraceCounters*) const override {
-    trace_(scene_, tile, hits);
+    if (bounds_.meets(tile)) packets_.local().trace(scene_, tile, hits);
   }
   std::size_t structure_bytes() const override { return static_cast<std::size_t>(bytes_); }
 
@@ -187,7 +240,8 @@ class EmbreeTechnique final : public Technique {
   RTCDevice device_;
   RTCGeometry geometry_ = nullptr;
   RTCScene scene_ = nullptr;
-  void (*trace_)(RTCScene, const TileRays&, TileHits&) = nullptr;
+  ImageBounds bounds_{};
+  mutable tbb::enumerable_thread_specific<TilePackets> packets_;
   std::vector<Vec3f> padded_;
   bool built_ = false;
 };
