@@ -21,7 +21,7 @@ inline constexpr std::array<unsigned char, 8> kMagic = {0x89, 'M',  'D',  'K',
                                                         '\r', '\n', 0x1a, '\n'};
 inline constexpr std::uint32_t kByteOrder = 0x01020304;
 inline constexpr std::uint16_t kMajorVersion = 2;
-inline constexpr std::uint16_t kMinorVersion = 0;
+inline constexpr std::uint16_t kMinorVersion = 1;
 inline constexpr std::uint64_t kAlignment = 64;
 inline constexpr std::uint32_t kMaxSections = 256;
 inline constexpr std::uint32_t kSectionNeeded =
@@ -77,6 +77,8 @@ static_assert(sizeof(BoneBinding) == 52 && sizeof(ClusterBone) == 52);
 static_assert(sizeof(Cluster) == 8 && sizeof(Segment) == 8);
 static_assert(sizeof(FuzzyTree) == 40 && offsetof(FuzzyTree, local_box) == 16);
 static_assert(sizeof(PoseKind) == 4 && sizeof(BoneWeight) == 8);
+static_assert(sizeof(QuantizationError) == 16 && sizeof(QuantizedBlock) == 72);
+static_assert(offsetof(QuantizedBlock, bits) == 60 && offsetof(QuantizedBlock, first_bit) == 64);
 static_assert(sizeof(MorphOffset) == 16 && offsetof(MorphOffset, offset) == 4);
 
 struct SectionKind {
@@ -124,6 +126,11 @@ inline constexpr SectionKind kJoints{fourcc("JNTS"), "joints"};
 inline constexpr SectionKind kJointNames{fourcc("JNAM"), "joint_names"};
 inline constexpr SectionKind kBoneBindings{fourcc("BIND"), "bone_bindings"};
 inline constexpr SectionKind kClusterBones{fourcc("CBON"), "cluster_bones"};
+inline constexpr SectionKind kQuantizationError{fourcc("QERR"), "quantization_error"};
+inline constexpr SectionKind kRunVertices{fourcc("QRUN"), "first_vertex"};
+inline constexpr SectionKind kRestPositions{fourcc("QRES"), "rest_positions"};
+inline constexpr SectionKind kQuantizedBlocks{fourcc("QBLK"), "quantized_blocks"};
+inline constexpr SectionKind kQuantizedWords{fourcc("QBIT"), "quantized_words"};
 inline constexpr SectionKind kKeyPositions{fourcc("POSE"), "key_positions"};
 
 /// Calls visit(kind, span) for the lists of a model that stand in a section of their own and are
@@ -159,6 +166,11 @@ void for_each_array(ModelRef&& model, Visit&& visit) {
   visit(kJointNames, model.skeleton.names);
   visit(kBoneBindings, model.skeleton.bones);
   visit(kClusterBones, model.cluster_bones);
+  visit(kQuantizationError, model.poses.quantized.error);
+  visit(kRunVertices, model.poses.quantized.first_vertex);
+  visit(kRestPositions, model.poses.quantized.rest_positions);
+  visit(kQuantizedBlocks, model.poses.quantized.blocks);
+  visit(kQuantizedWords, model.poses.quantized.words);
   visit(kKeyPositions, model.poses.key_positions);
 }
 

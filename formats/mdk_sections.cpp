@@ -30,7 +30,10 @@ constexpr SectionKind kKnownSections[] = {layout::kModel,           layout::kCli
                                           layout::kBoneWeights,     layout::kFirstOffset,
                                           layout::kMorphOffsets,    layout::kJoints,
                                           layout::kJointNames,      layout::kBoneBindings,
-                                          layout::kClusterBones,    layout::kKeyPositions};
+                                          layout::kClusterBones,    layout::kQuantizationError,
+                                          layout::kRunVertices,     layout::kRestPositions,
+                                          layout::kQuantizedBlocks, layout::kQuantizedWords,
+                                          layout::kKeyPositions};
 
 const SectionKind* find_kind(std::uint32_t id) {
   const auto found = std::find_if(std::begin(kKnownSections), std::end(kKnownSections),

@@ -21,11 +21,12 @@ const ModelRecord& only_record(const MdkSections& sections, const std::string& p
     throw bad_input(path, "section model must hold one record; the file is damaged: bake it again");
   }
   const ModelRecord& record = records.front();
-  if (record.pose_kind > PoseKind::kRig) {
-    throw bad_input(path, "stores its poses as kind " +
-                              std::to_string(static_cast<std::uint32_t>(record.pose_kind)) +
-                              ", which this program does not know (it knows 0, key positions, and "
-                              "1, a rig); use a newer one, or bake the file again");
+  if (record.pose_kind > PoseKind::kQuantized) {
+    throw bad_input(
+        path, "stores its poses as kind " +
+                  std::to_string(static_cast<std::uint32_t>(record.pose_kind)) +
+                  ", which this program does not know (it knows 0, key positions, "
+                  "1, a rig, and 2, quantised positions); use a newer one, or bake the file again");
   }
   return record;
 }

@@ -22,6 +22,11 @@ std::string check_absent(const Model& m) {
                        !rig.target_weights.empty();
   if (poses.kind != PoseKind::kRig && has_rig)
     return "base_positions: a rig is there, though poses are stored in another way";
+  const QuantizedView& q = poses.quantized;
+  const bool has_quantized = !q.error.empty() || !q.first_vertex.empty() ||
+                             !q.rest_positions.empty() || !q.blocks.empty() || !q.words.empty();
+  if (poses.kind != PoseKind::kQuantized && has_quantized)
+    return "quantized_blocks: there, though poses are stored in another way";
   return {};
 }
 
@@ -29,10 +34,11 @@ std::string check_absent(const Model& m) {
 std::string run_fault(const char* name, std::span<const std::uint32_t> first, std::uint64_t size,
                       std::uint32_t least) {
   const std::string where = std::string(name) + ": ";
-  if (first.front() != 0 || first.back() != size) return where + "the runs do not cover their list";
+  if (first.empty() || first.front() != 0 || first.back() != size)
+    return where + "the runs do not cover their list";
   for (std::size_t i = 0; i + 1 < first.size(); ++i) {
     if (first[i + 1] < first[i] || first[i + 1] - first[i] < least)
-      return where + "the run of vertex " + number(i) + " ends too early";
+      return where + "run " + number(i) + " ends too early";
   }
   return {};
 }
@@ -118,6 +124,51 @@ std::string check_rig(const Model& m) {
   return check_rig_numbers(rig);
 }
 
+std::string check_quantization_error(const QuantizedView& q) {
+  if (std::string fault = count_fault("quantization_error", q.error.size(), 1); !fault.empty())
+    return fault;
+  const bool sound = std::isfinite(q.error[0].bound) && q.error[0].largest >= 0 &&
+                     q.error[0].largest <= q.error[0].bound;
+  return sound ? "" : "quantization_error: the largest error is not within its bound";
+}
+
+std::string check_quantized_block(const QuantizedBlock& block, std::uint64_t first_bit,
+                                  std::size_t i) {
+  const std::string name = "quantized_blocks: block " + number(i);
+  for (const std::uint8_t bits : block.bits) {
+    if (bits > kMostCoordinateBits) return name + " has coordinates of more than 16 bits";
+  }
+  if (!is_number(block.step) || !is_number(block.world_from_local))
+    return name + " has a number that is not finite";
+  if (block.first_bit != first_bit) return name + " does not start where the last one ended";
+  return {};
+}
+
+std::string check_quantized(const Model& m) {
+  const QuantizedView& q = m.poses.quantized;
+  if (std::string fault = check_quantization_error(q); !fault.empty()) return fault;
+  if (std::string fault = run_fault("first_vertex", q.first_vertex, m.vertex_count, 1);
+      !fault.empty())
+    return fault;
+  const std::uint64_t runs = q.first_vertex.size() - 1;
+  for (const std::string& fault :
+       {count_fault("rest_positions", q.rest_positions.size(), m.vertex_count),
+        number_fault("rest_positions", q.rest_positions),
+        count_fault("quantized_blocks", q.blocks.size(), runs * m.key_times.size())}) {
+    if (!fault.empty()) return fault;
+  }
+  const std::uint64_t room = 32 * std::uint64_t{q.words.size()};
+  std::uint64_t bits = 0;
+  for (std::size_t i = 0; i < q.blocks.size(); ++i) {
+    if (std::string fault = check_quantized_block(q.blocks[i], bits, i); !fault.empty())
+      return fault;
+    const std::uint64_t vertices = q.first_vertex[i % runs + 1] - q.first_vertex[i % runs];
+    bits = (bits + vertices * q.blocks[i].bits_per_vertex() + 31) / 32 * 32;
+    if (bits > room) break;
+  }
+  return count_fault("quantized_words", q.words.size(), bits / 32 + 1);
+}
+
 }  // namespace
 
 std::string check_poses(const Model& m) {
@@ -128,6 +179,8 @@ std::string check_poses(const Model& m) {
                          std::uint64_t{m.vertex_count} * m.key_times.size());
     case PoseKind::kRig:
       return check_rig(m);
+    case PoseKind::kQuantized:
+      return check_quantized(m);
   }
   return "model: the kind of its poses is unknown";
 }

@@ -43,4 +43,15 @@ ClusterMembers make_cluster_members(std::span<const Triangle> triangles,
   return members;
 }
 
+std::vector<std::uint32_t> cluster_order(const ClusterMembers& members,
+                                         std::uint32_t vertex_count) {
+  std::vector<std::uint32_t> order;
+  std::vector<char> met(vertex_count, 0);
+  for (const std::uint32_t v : members.vertices) {
+    if (!met[v]) order.push_back(v);
+    met[v] = 1;
+  }
+  return order;
+}
+
 }  // namespace mdk

@@ -34,4 +34,8 @@ ClusterMembers make_cluster_members(std::span<const Triangle> triangles,
                                     std::span<const std::uint32_t> cluster_of_triangle,
                                     std::uint32_t cluster_count, std::uint32_t vertex_count);
 
+/// Vertices in the order in which the clusters first use them, so that those of a cluster lie
+/// together; vertices no cluster uses are left out.
+std::vector<std::uint32_t> cluster_order(const ClusterMembers& members, std::uint32_t vertex_count);
+
 }  // namespace mdk

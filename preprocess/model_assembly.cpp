@@ -95,24 +95,12 @@ void build_fuzzy_trees(ModelStorage& model, std::span<const ClusterWork> work,
   }
 }
 
-/// Vertices in the order in which the clusters meet them, so that those of a cluster lie together.
-std::vector<std::uint32_t> cluster_order(const ClusterMembers& members,
-                                         std::uint32_t vertex_count) {
-  std::vector<std::uint32_t> order;
-  std::vector<char> met(vertex_count, 0);
-  for (const std::uint32_t v : members.vertices) {
-    if (!met[v]) order.push_back(v);
-    met[v] = 1;
-  }
-  return order;
-}
-
-/// What takes less room: the rig, where there is one, or the positions it was decoded to.
-PoseStorage smallest_poses(PoseSequence& sequence) {
-  if (sequence.skeleton) return {PoseKind::kRig, {}, *std::move(sequence.rig)};
-  if (!sequence.rig || sequence.rig->bytes() >= sequence.positions.size() * sizeof(Vec3f))
-    return {PoseKind::kKeyPositions, std::move(sequence.positions), {}};
-  return {PoseKind::kRig, {}, *std::move(sequence.rig)};
+/// What takes least room of what there is; a skeleton is of no use without its rig.
+PoseStorage stored_poses(PoseSequence& sequence, std::optional<QuantizedPoses> quantized) {
+  if (quantized) return {PoseKind::kQuantized, {}, {}, *std::move(quantized)};
+  if (sequence.skeleton || rig_is_smallest(sequence))
+    return {PoseKind::kRig, {}, *std::move(sequence.rig), {}};
+  return {PoseKind::kKeyPositions, std::move(sequence.positions), {}, {}};
 }
 
 std::vector<Cluster> cluster_ranges(const ClusterMembers& members) {
@@ -137,6 +125,10 @@ double mean_work(std::span<const Segment> segments, std::span<const ClusterWork>
 
 }  // namespace
 
+bool rig_is_smallest(const PoseSequence& sequence) {
+  return sequence.rig && sequence.rig->bytes() < sequence.positions.size() * sizeof(Vec3f);
+}
+
 AssembledModel assemble_model(PoseSequence sequence, const ClusterMembers& members,
                               ModelParts parts, ProgressSink& progress) {
   progress.report("build", 0);
@@ -158,7 +150,6 @@ AssembledModel assemble_model(PoseSequence sequence, const ClusterMembers& membe
   for (const Aabb& box : model.cluster_world_boxes) model.bounds.extend(box);
   model.clusters = cluster_ranges(members);
   model.local_from_world = std::move(parts.local_from_world);
-  select_vertices(sequence, cluster_order(members, sequence.vertex_count));
   model.vertex_count = sequence.vertex_count;
   model.triangles = std::move(sequence.triangles);
   progress.report("build", 0.4);
@@ -180,7 +171,7 @@ AssembledModel assemble_model(PoseSequence sequence, const ClusterMembers& membe
   permute(model.appearance.corner_colors, model.source_triangles, 3);
   model.clips = std::move(sequence.clips);
   model.key_times = std::move(sequence.key_times);
-  model.poses = smallest_poses(sequence);
+  model.poses = stored_poses(sequence, std::move(parts.quantized));
   if (sequence.skeleton) model.skeleton = *std::move(sequence.skeleton);
   model.cluster_bones = std::move(parts.cluster_bones);
   progress.report("build", 1);

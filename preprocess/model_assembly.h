@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "common/base/progress.h"
@@ -19,6 +20,7 @@ struct ModelParts {
 
   std::vector<ClusterBone> cluster_bones;  ///< K where a pose space is bounded, else none
   std::vector<Aabb> pose_space_boxes;      ///< T then, in the order of the clusters' triangles
+  std::optional<QuantizedPoses> quantized;  ///< what the sequence's positions were decoded from
 };
 
 struct AssembledModel {
@@ -26,8 +28,12 @@ struct AssembledModel {
   double expected_work = 0;  ///< of a ray that meets the model, mean over time (cost.h)
 };
 
-/// Consumes the sequence and the parts. Reports stage "build". Throws Error (kOverLimit) where the
-/// trees outgrow 32-bit links.
+/// Whether the model of a sequence keeps its rig: where there is one that takes less room than the
+/// positions.
+bool rig_is_smallest(const PoseSequence& sequence);
+
+/// Consumes the sequence, whose vertices stand in cluster_order, and the parts. Reports stage
+/// "build". Throws Error (kOverLimit) where the trees outgrow 32-bit links.
 AssembledModel assemble_model(PoseSequence sequence, const ClusterMembers& members,
                               ModelParts parts, ProgressSink& progress);
 

@@ -16,6 +16,7 @@
 #include "preprocess/key_maps.h"
 #include "preprocess/model_assembly.h"
 #include "preprocess/motion_clusters.h"
+#include "preprocess/pose_quantizer.h"
 #include "preprocess/pose_space.h"
 #include "preprocess/pose_table.h"
 #include "preprocess/segments.h"
@@ -86,12 +87,15 @@ void check_input(const PoseSequence& sequence, const DecomposeOptions& options) 
   check_positions(sequence);
 }
 
-std::vector<std::string> segment_notes(const DecomposeOptions& options, std::size_t segments) {
-  if (options.segments <= segments) return {};
-  return {std::to_string(options.segments) +
-          " segments are more than the animation has intervals "
-          "between keys: it got " +
-          std::to_string(segments)};
+std::vector<std::string> make_notes(const DecomposeOptions& options, const ModelStorage& model) {
+  std::vector<std::string> notes;
+  if (options.segments > model.segments.size())
+    notes.push_back(std::to_string(options.segments) +
+                    " segments are more than the animation has intervals between keys: it got " +
+                    std::to_string(model.segments.size()));
+  if (options.quantize && model.poses.kind != PoseKind::kQuantized)
+    notes.push_back("poses stay exact: bones and morph targets take less room than quantised keys");
+  return notes;
 }
 
 /// Residuals are reported relative to the rest pose's diagonal; a rest pose that is a point has
@@ -212,6 +216,24 @@ Decomposition decide(const PoseSequence& sequence, const DecomposeOptions& optio
   return decide_nothing(sequence, options);
 }
 
+double pose_diagonal(std::span<const Vec3f> pose) {
+  Aabbd box;
+  for (const Vec3f& v : pose) box.extend(to_double(v));
+  return box.diagonal();
+}
+
+/// Quantises the sequence's poses: nothing where its rig is kept, which is exact and takes less
+/// room.
+std::optional<QuantizedPoses> quantized(PoseSequence& sequence, const Decomposition& decided,
+                                        double error, double unit) {
+  if (sequence.skeleton || rig_is_smallest(sequence)) return std::nullopt;
+  sequence.rig.reset();
+  const std::uint32_t rest_key = decided.clusters.rest_key;
+  const double length = residual_unit(pose_diagonal(sequence.pose(rest_key)), unit);
+  return quantize_poses(sequence, decided.members, decided.maps.local_from_world,
+                        {error, length, rest_key});
+}
+
 }  // namespace
 
 DecomposeResult decompose(PoseSequence sequence, const DecomposeOptions& options,
@@ -227,7 +249,10 @@ DecomposeResult decompose(PoseSequence sequence, const DecomposeOptions& options
     sequence.skeleton.reset();
   }
   Decomposition decided = decide(sequence, options, unit, decomposing);
+  select_vertices(sequence, cluster_order(decided.members, sequence.vertex_count));
+  decided.members = members_of(sequence, decided.clusters);
   ModelParts parts;
+  if (options.quantize) parts.quantized = quantized(sequence, decided, *options.quantize, unit);
   parts.local_from_world = std::move(decided.maps.local_from_world);
   parts.rest_key = decided.clusters.rest_key;
   decomposing.report("decompose", kMappedAt);
@@ -249,7 +274,9 @@ DecomposeResult decompose(PoseSequence sequence, const DecomposeOptions& options
   DecomposeResult result;
   result.stats = make_stats(decided.clusters, assembled, decided.maps.residual, unit);
   result.stats.refine_gain = decided.maps.refine_gain;
-  result.stats.notes = segment_notes(options, assembled.model.segments.size());
+  if (const auto& error = assembled.model.poses.quantized.error; !error.empty())
+    result.stats.quantization = error.front();
+  result.stats.notes = make_notes(options, assembled.model);
   result.stats.decompose_seconds = decompose_seconds;
   result.stats.build_seconds = watch.seconds();
   result.model = std::move(assembled.model);

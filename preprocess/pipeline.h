@@ -35,6 +35,8 @@ struct DecomposeOptions {
   std::uint32_t segments = 0;             ///< exactly so many, or as many as there can be; 0: as
                                           ///< many as pay
   bool refine = true;                     ///< improve maps towards the smallest boxes
+  std::optional<double> quantize;  ///< key positions may be so far off, in rest pose diagonals, to
+                                   ///< take less room; a rig that takes less still stays exact
 };
 
 /// What happened while clusters were added, stage by stage, on the keys that were looked at then.
@@ -50,6 +52,7 @@ struct DecomposeStats {
   std::string stop_reason;  ///< one of: "cost", "percent", "count", "limit", "bones", "none"
   double residual_rms = 0;  ///< over all keys, relative to the rest pose's diagonal
   double residual_max = 0;
+  std::optional<QuantizationError> quantization;  ///< where poses were quantised
   double sah_cost = 0;
   double refine_gain = 0;  ///< share by which refinement lowered the summed area of fuzzy boxes
   std::vector<ClusteringStep> steps;

@@ -81,6 +81,9 @@ void decode_pose(const Model& model, std::uint32_t key, VertexRange range, std::
     case PoseKind::kRig:
       pose_vertices(poses.rig, rig_pose(poses.rig, key, model.key_count()), range, out);
       return;
+    case PoseKind::kQuantized:
+      decode_vertices(poses.quantized, key, range, out);
+      return;
   }
 }
 

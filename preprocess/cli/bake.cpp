@@ -39,6 +39,7 @@ struct BakeArguments {
   std::string rest_pose = "auto";
   std::string segments = "auto";
   std::string refine = "on";
+  std::string quantize = "off";
   MachineOptions machine;
   MessageOptions messages;
 };
@@ -82,6 +83,12 @@ DecomposeOptions parse_decompose_options(const BakeArguments& arguments) {
   }
   if (arguments.rest_pose != "auto")
     options.rest_key = parse_count("--rest-pose", arguments.rest_pose, {0, 0xffffffffu});
+  if (arguments.quantize != "off") {
+    options.quantize = parse_real("--quantize", arguments.quantize);
+    if (!(*options.quantize > 0 && *options.quantize < 1))
+      throw Error(ErrorCode::kUsage, "--quantize " + arguments.quantize +
+                                         ": expected off, or an error above 0 and below 1");
+  }
   if (arguments.segments != "auto")
     options.segments = parse_count("--segments", arguments.segments, {});
 
@@ -215,6 +222,12 @@ void add_decompose_options(CLI::App& command, BakeArguments& arguments) {
                   "The key the local bases are fitted to, counted from 0 through all clips, or\n"
                   "the best there is (default: auto).")
       ->type_name("auto|KEY");
+  command
+      .add_option("--quantize", arguments.quantize,
+                  "Store key positions with few bits: no vertex is farther off than ERROR times\n"
+                  "the rest pose's diagonal, above 0 and below 1. Skins and morphs that take\n"
+                  "less room stay exact (default: off).")
+      ->type_name("off|ERROR");
   command
       .add_option("--segments", arguments.segments,
                   "Into how many stretches of time, each with boxes and trees of its own: as many\n"

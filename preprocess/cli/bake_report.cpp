@@ -25,6 +25,9 @@ std::string bake_report_json(const Model& model, const DecomposeStats& stats,
   for (const Clip& clip : model.clips)
     clips.push_back(
         {{"name", clip.name}, {"seconds", model.clip_seconds(clip)}, {"keys", clip.key_count}});
+  Json quantization = nullptr;
+  if (stats.quantization)
+    quantization = {{"bound", stats.quantization->bound}, {"largest", stats.quantization->largest}};
   const Json report = {
       {"schema", "mdprep-bake/1"},
       {"input", outcome.input},
@@ -38,6 +41,7 @@ std::string bake_report_json(const Model& model, const DecomposeStats& stats,
       {"stop_reason", stats.stop_reason},
       {"residual_rms", stats.residual_rms},
       {"residual_max", stats.residual_max},
+      {"quantization", quantization},
       {"sah_cost", stats.sah_cost},
       {"refine_gain", stats.refine_gain},
       {"seconds",

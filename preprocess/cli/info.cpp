@@ -4,6 +4,7 @@
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <string_view>
 
 #include "formats/mdk_view.h"
 #include "preprocess/cli/box_areas.h"
@@ -56,6 +57,32 @@ Json json_of_segments(const Model& model) {
   return segments;
 }
 
+std::string_view pose_kind_name(PoseKind kind) {
+  if (kind == PoseKind::kRig) return "rig";
+  return kind == PoseKind::kQuantized ? "quantized" : "key_positions";
+}
+
+std::string poses_text(const Model& model) {
+  const PoseSource& poses = model.poses;
+  const std::uint32_t keys = model.key_count();
+  if (poses.kind == PoseKind::kRig)
+    return "a rig of " + grouped_text(poses.rig.bone_maps.size() / keys) + " bones and " +
+           grouped_text(poses.rig.target_weights.size() / keys) + " morph targets";
+  if (poses.kind == PoseKind::kKeyPositions) return "positions at every key";
+  const QuantizationError& error = poses.quantized.error.front();
+  return "quantised, off by " + fixed_text(error.largest * 100, 5) + " % of the diagonal (bound " +
+         fixed_text(error.bound * 100, 5) + " %)";
+}
+
+Json json_of_poses(const PoseSource& poses) {
+  Json json = {{"kind", pose_kind_name(poses.kind)}};
+  if (poses.kind == PoseKind::kQuantized) {
+    json["error_bound"] = poses.quantized.error.front().bound;
+    json["largest_error"] = poses.quantized.error.front().largest;
+  }
+  return json;
+}
+
 void print_json(const MdkFile& file, const InfoArguments& arguments) {
   const Model& model = file.model();
   Json textures = Json::array();
@@ -79,6 +106,7 @@ void print_json(const MdkFile& file, const InfoArguments& arguments) {
       {"largest_cluster_triangles", sizes.largest},
       {"kd_nodes", model.kd_nodes.size()},
       {"kd_refs", model.kd_refs.size()},
+      {"poses", json_of_poses(model.poses)},
       {"rest_key", model.rest_key},
       {"rest_diagonal", model.rest_diagonal},
       {"bounds", {{"lo", json_of(model.bounds.lo)}, {"hi", json_of(model.bounds.hi)}}},
@@ -132,6 +160,7 @@ void print_facts(const MdkFile& file, const InfoArguments& arguments) {
   facts.add_row({"triangles", grouped_text(model.triangle_count())});
   facts.add_row({"vertices", grouped_text(model.vertex_count)});
   facts.add_row({"keys", grouped_text(model.key_count())});
+  facts.add_row({"poses", poses_text(model)});
   facts.add_row({"clusters", grouped_text(model.cluster_count()) + " (of " +
                                  grouped_text(sizes.smallest) + " to " +
                                  grouped_text(sizes.largest) + " triangles)"});

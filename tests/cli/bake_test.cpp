@@ -33,10 +33,10 @@ TEST_F(Bake, TheReportHasExactlyTheFieldsOfTheContract) {
   ASSERT_EQ(bake.status, 0) << bake.err;
   const Json report = Json::parse(read_text(folder_.file("a.json")));
   EXPECT_EQ(names_of(report),
-            (std::vector<std::string>{"schema", "input", "triangles", "vertices", "keys", "clips",
-                                      "clusters", "segments", "rest_key", "stop_reason",
-                                      "residual_rms", "residual_max", "sah_cost", "refine_gain",
-                                      "seconds", "peak_memory_bytes", "file_bytes"}));
+            (std::vector<std::string>{
+                "schema", "input", "triangles", "vertices", "keys", "clips", "clusters", "segments",
+                "rest_key", "stop_reason", "residual_rms", "residual_max", "quantization",
+                "sah_cost", "refine_gain", "seconds", "peak_memory_bytes", "file_bytes"}));
   EXPECT_EQ(names_of(report["seconds"]),
             (std::vector<std::string>{"read", "decompose", "build", "write", "total"}));
   EXPECT_EQ(report["schema"], "mdprep-bake/1");
@@ -188,6 +188,31 @@ TEST_F(BakeCache, AMeshAndItsPointCacheMakeOneClip) {
       run_mdprep({"verify", baked_, "--source", mesh_, "--source", cache_, "--fps", "4"});
   EXPECT_EQ(same.status, 0) << same.out << same.err;
   EXPECT_EQ(run_mdprep({"verify", baked_, "--source", mesh_}).status, 3) << "one key is not three";
+}
+
+TEST_F(BakeCache, PosesCanBeQuantisedWithinABoundThatInfoAndVerifyKnow) {
+  const Outcome bake = run_mdprep({"bake", mesh_, cache_, "-o", baked_, "--fps", "4", "--quantize",
+                                   "0.001", "--report", folder_.file("r.json")});
+  ASSERT_EQ(bake.status, 0) << bake.err;
+  const Json report = Json::parse(read_text(folder_.file("r.json")))["quantization"];
+  EXPECT_EQ(report["bound"], 0.001);
+  EXPECT_LE(report["largest"], 0.001);
+  const Json poses = Json::parse(run_mdprep({"info", baked_, "--json"}).out)["poses"];
+  EXPECT_EQ(poses["kind"], "quantized");
+  EXPECT_EQ(poses["largest_error"], report["largest"]);
+  EXPECT_THAT(run_mdprep({"info", baked_}).out, HasSubstr("(bound 0.10000 %)"));
+  const Outcome same =
+      run_mdprep({"verify", baked_, "--source", mesh_, "--source", cache_, "--fps", "4"});
+  EXPECT_EQ(same.status, 0) << same.out << same.err;
+}
+
+TEST_F(Bake, BonesThatTakeLessRoomStayExact) {
+  const Outcome bake =
+      run_mdprep({"bake", source(), "-o", folder_.file("a.mdk"), "--quantize", "0.001", "-v"});
+  EXPECT_EQ(bake.status, 0);
+  EXPECT_THAT(bake.err, HasSubstr("poses stay exact"));
+  EXPECT_EQ(Json::parse(run_mdprep({"info", folder_.file("a.mdk"), "--json"}).out)["poses"]["kind"],
+            "rig");
 }
 
 TEST_F(BakeCache, AMeshAloneIsOneKey) {

@@ -86,6 +86,8 @@ TEST_F(CommandLine, WrongUseIsStatus2AndOneSentence) {
       {"bake", source(), "-o", out("x.mdk"), "--stop", "100"},
       {"bake", source(), "-o", out("x.mdk"), "--stop", "often"},
       {"bake", source(), "-o", out("x.mdk"), "--refine", "perhaps"},
+      {"bake", source(), "-o", out("x.mdk"), "--quantize", "0"},
+      {"bake", source(), "-o", out("x.mdk"), "--quantize", "fine"},
       {"bake", source(), "-o", out("x.mdk"), "--clusters", "3", "--stop", "5"},
       {"bake", source(), "-o", out("x.mdk"), "--decompose", "none", "--stop", "5"},
       {"bake", source(), "-o", out("x.mdk"), "--rest-pose", "47"},

@@ -34,6 +34,11 @@ ModelStorage copy_of(const Model& model) {
   copy_list(copy.poses.rig.morph_offsets, model.poses.rig.morph_offsets);
   copy_list(copy.poses.rig.bone_maps, model.poses.rig.bone_maps);
   copy_list(copy.poses.rig.target_weights, model.poses.rig.target_weights);
+  copy_list(copy.poses.quantized.error, model.poses.quantized.error);
+  copy_list(copy.poses.quantized.first_vertex, model.poses.quantized.first_vertex);
+  copy_list(copy.poses.quantized.rest_positions, model.poses.quantized.rest_positions);
+  copy_list(copy.poses.quantized.blocks, model.poses.quantized.blocks);
+  copy_list(copy.poses.quantized.words, model.poses.quantized.words);
   copy_list(copy.triangles, model.triangles);
   copy_list(copy.source_triangles, model.source_triangles);
   copy_list(copy.clusters, model.clusters);

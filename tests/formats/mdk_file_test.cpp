@@ -54,6 +54,11 @@ void expect_same_poses(const PoseSource& mapped, const PoseStorage& original) {
   expect_same("first_offset", mapped.rig.first_offset, original.rig.first_offset);
   expect_same("morph_offsets", mapped.rig.morph_offsets, original.rig.morph_offsets);
   expect_same("bone_maps", mapped.rig.bone_maps, original.rig.bone_maps);
+  expect_same("quantization_error", mapped.quantized.error, original.quantized.error);
+  expect_same("first_vertex", mapped.quantized.first_vertex, original.quantized.first_vertex);
+  expect_same("rest_positions", mapped.quantized.rest_positions, original.quantized.rest_positions);
+  expect_same("quantized_blocks", mapped.quantized.blocks, original.quantized.blocks);
+  expect_same("quantized_words", mapped.quantized.words, original.quantized.words);
   expect_same("target_weights", mapped.rig.target_weights, original.rig.target_weights);
 }
 
@@ -92,11 +97,8 @@ TEST_F(MdkFileTest, GivesBackEveryListAndNumber) {
   EXPECT_EQ(file.path(), path_);
 }
 
-TEST_F(MdkFileTest, GivesBackARigAndThePosesItStandsFor) {
-  const ModelStorage original = sample_rig_model(), keys = sample_model();
-  const MdkFile file(written(original));
-  const Model& model = file.model();
-  expect_same_model(model, original);
+void expect_poses_of_the_sample(const Model& model) {
+  const ModelStorage keys = sample_model();
   for (std::uint32_t key = 0; key < model.key_count(); ++key) {
     std::vector<Vec3f> pose(model.vertex_count);
     decode_pose(model, key, {0, model.vertex_count}, pose);
@@ -104,6 +106,20 @@ TEST_F(MdkFileTest, GivesBackARigAndThePosesItStandsFor) {
                 testing::ElementsAreArray(
                     std::span(keys.poses.key_positions).subspan(key * pose.size(), pose.size())));
   }
+}
+
+TEST_F(MdkFileTest, GivesBackARigAndThePosesItStandsFor) {
+  const ModelStorage original = sample_rig_model();
+  const MdkFile file(written(original));
+  expect_same_model(file.model(), original);
+  expect_poses_of_the_sample(file.model());
+}
+
+TEST_F(MdkFileTest, GivesBackQuantisedPosesAndWhatTheyDecodeTo) {
+  const ModelStorage original = sample_quantized_model();
+  const MdkFile file(written(original));
+  expect_same_model(file.model(), original);
+  expect_poses_of_the_sample(file.model());
 }
 
 TEST_F(MdkFileTest, GivesBackAModelWithoutAnyOptionalList) {
@@ -138,10 +154,10 @@ TEST_F(MdkFileTest, WriterReturnsTheSizeOfTheFile) {
 
 TEST_F(MdkFileTest, HeaderIsAsSpecified) {
   const Bytes bytes = sample_bytes();
-  const Bytes magic = {0x89, 'M', 'D', 'K', 0x0d, 0x0a, 0x1a, 0x0a, 4, 3, 2, 1, 2, 0, 0, 0};
+  const Bytes magic = {0x89, 'M', 'D', 'K', 0x0d, 0x0a, 0x1a, 0x0a, 4, 3, 2, 1, 2, 0, 1, 0};
   EXPECT_EQ(Bytes(bytes.begin(), bytes.begin() + 16), magic);
   EXPECT_EQ(get<std::uint64_t>(bytes, 16), bytes.size());
-  EXPECT_EQ(get<std::uint32_t>(bytes, 24), 32u);
+  EXPECT_EQ(get<std::uint32_t>(bytes, 24), 37u);
   EXPECT_THAT(Bytes(bytes.begin() + 28, bytes.begin() + 56), testing::Each(0));
   Bytes resealed = bytes;
   seal(resealed);
@@ -209,7 +225,7 @@ TEST_F(MdkFileTest, RecordsAreAsSpecified) {
 
 TEST_F(MdkFileTest, ListsItsSectionsByName) {
   const auto sections = MdkFile(written(sample_model())).sections();
-  ASSERT_EQ(sections.size(), 32u);
+  ASSERT_EQ(sections.size(), 37u);
   EXPECT_EQ(sections.front().name, "model");
   EXPECT_EQ(sections.front().bytes, 64u);
   EXPECT_EQ(sections.back().name, "key_positions");
@@ -343,7 +359,7 @@ TEST_F(MdkFileTest, RefusesOtherVersionsAndByteOrders) {
   expect_refused(newer, "has file format 3.4, this program reads 2.0");
   Bytes older = bytes;
   put(older, 12, std::uint16_t{1});
-  expect_refused(older, "has file format 1.0, this program reads 2.0");
+  expect_refused(older, "has file format 1.1, this program reads 2.0");
   Bytes swapped = bytes;
   put(swapped, 8, std::uint32_t{0x04030201});
   expect_refused(swapped, "has an unknown byte order");

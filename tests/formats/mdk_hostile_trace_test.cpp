@@ -74,25 +74,32 @@ TEST(MdkHostileTrace, PositionsThatAreNoNumbersAtAllCanBeRendered) {
   }
 }
 
-/// A section that holds the poses of one kind: tried on the sample of that kind.
-bool is_tried(const ByteRange& range, PoseKind kind) {
-  static constexpr const char* kRigSections[] = {"BONE", "TGTW", "BASE", "BWFI",
-                                                 "BWGT", "MOFI", "MOFF"};
-  const bool of_rig = std::ranges::find(kRigSections, range.name) != std::end(kRigSections);
-  return of_rig == (kind == PoseKind::kRig);
+/// The kind of poses whose samples a section is tried on.
+PoseKind kind_of(const ByteRange& range) {
+  static constexpr const char* kOfRig[] = {"BONE", "TGTW", "BASE", "BWFI", "BWGT", "MOFI", "MOFF"};
+  if (std::ranges::find(kOfRig, range.name) != std::end(kOfRig)) return PoseKind::kRig;
+  static constexpr const char* kOfQuantized[] = {"QERR", "QRUN", "QRES", "QBLK", "QBIT"};
+  if (std::ranges::find(kOfQuantized, range.name) != std::end(kOfQuantized))
+    return PoseKind::kQuantized;
+  return PoseKind::kKeyPositions;
+}
+
+ModelStorage sample_of(PoseKind kind) {
+  if (kind == PoseKind::kRig) return sample_rig_model();
+  return kind == PoseKind::kQuantized ? sample_quantized_model() : sample_model();
 }
 
 class MdkHostileTraceOfPoses : public testing::TestWithParam<PoseKind> {};
 
 TEST_P(MdkHostileTraceOfPoses, AnyDamageThatOpensCanBeRendered) {
   const ThreadLimit one_thread(1);  // the frames are tiny
-  HostileFile file(GetParam() == PoseKind::kRig ? sample_rig_model() : sample_model());
+  HostileFile file(sample_of(GetParam()));
   std::size_t refused = 0, rendered = 0;
   const auto words = extreme_words();
   std::size_t turn =
       0;  // goes through the extremes four at a time: all at every place take minutes
   for (const ByteRange& range : file.ranges()) {
-    if (!is_tried(range, GetParam())) continue;
+    if (kind_of(range) != GetParam()) continue;
     for (std::size_t at = range.begin; at + 4 <= range.end; at += 4) {
       for (int i = 0; i < 4; ++i) {
         const std::uint32_t word = words[turn++ % words.size()];
@@ -113,7 +120,8 @@ TEST_P(MdkHostileTraceOfPoses, AnyDamageThatOpensCanBeRendered) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Kinds, MdkHostileTraceOfPoses,
-                         testing::Values(PoseKind::kKeyPositions, PoseKind::kRig));
+                         testing::Values(PoseKind::kKeyPositions, PoseKind::kRig,
+                                         PoseKind::kQuantized));
 
 }  // namespace
 }  // namespace mdk::test

@@ -116,6 +116,27 @@ Rig sample_rig(const ModelStorage& model) {
   return rig;
 }
 
+/// Strip 0 has y in a bit, strip 1 has x in two bits and y in three; the rise is in the maps.
+QuantizedPoses sample_quantized_poses(const ModelStorage& model) {
+  const std::uint32_t first_of_strip_1 = kTrianglesPerStrip[0] + 2;
+  QuantizedPoses poses;
+  poses.error = {{1e-3, 5e-4}};
+  poses.first_vertex = {0, first_of_strip_1, model.vertex_count};
+  for (std::uint32_t v = 0; v < model.vertex_count; ++v)
+    poses.rest_positions.push_back(
+        v < first_of_strip_1 ? Vec3f{model.poses.key_positions[v].x, 0, 0} : Vec3f{0, 4, 2});
+  for (std::uint32_t key = 0; key < kKeys; ++key) {
+    QuantizedBlock rising{{}, {0, 1, 0}, {0, 1, 0}, 0, 64 * key};
+    rising.world_from_local.m[1][3] = kRise * static_cast<float>(key);
+    poses.blocks.push_back(rising);
+    poses.blocks.push_back({{}, {0.5f, 0.25f, 0}, {2, 3, 0}, 0, 64 * key + 32});
+    poses.words.push_back(0b10'10'10);
+    poses.words.push_back(0b10010'00010'10000'00000);
+  }
+  poses.words.push_back(0);
+  return poses;
+}
+
 }  // namespace
 
 ModelStorage sample_model() {
@@ -128,7 +149,13 @@ ModelStorage sample_model() {
 
 ModelStorage sample_rig_model() {
   ModelStorage model = sample_model();
-  model.poses = {PoseKind::kRig, {}, sample_rig(model)};
+  model.poses = {PoseKind::kRig, {}, sample_rig(model), {}};
+  return model;
+}
+
+ModelStorage sample_quantized_model() {
+  ModelStorage model = sample_model();
+  model.poses = {PoseKind::kQuantized, {}, {}, sample_quantized_poses(model)};
   return model;
 }
 

@@ -14,6 +14,10 @@ ModelStorage sample_model();
 /// positions. Only the list of key positions is empty.
 ModelStorage sample_rig_model();
 
+/// The same model, its poses stored as whole numbers of few bits that give the same positions: a
+/// run of vertices for each strip. Only the list of key positions is empty.
+ModelStorage sample_quantized_model();
+
 /// The one with a rig, in one segment, with a skeleton of two joints, "hip" and "tail".
 ModelStorage sample_skeleton_model();
 
