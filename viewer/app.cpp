@@ -6,12 +6,14 @@
 #include <cmath>
 #include <filesystem>
 #include <iostream>
+#include <utility>
 
 #include "common/trace/technique.h"
 #include "formats/image_writer.h"
 #include "viewer/overlays.h"
+#include "viewer/picture_mouse.h"
 #include "viewer/picture_name.h"
-#include "viewer/source_file.h"
+#include "viewer/render_command.h"
 #include "viewer/state_report.h"
 #include "viewer/time_line.h"
 
@@ -22,6 +24,7 @@ constexpr double kDrawSeconds = 1.0 / 60;     // never drawn more often
 constexpr double kPlayingSeconds = 1.0 / 30;  // the play head moves although the picture is late
 constexpr double kIdleSeconds = 1.0;
 constexpr double kNoticeSeconds = 4;
+constexpr double kLookSeconds = 0.5;  // between looks at the files on disk
 constexpr int kSettlingDraws = 3;
 
 }  // namespace
@@ -31,38 +34,54 @@ App::App(const ViewerOptions& options)
       window_(options.size.value_or(WindowSize{}),
               options.size ? SizeUnit::kExact : SizeUnit::kScaled),
       theme_(make_theme(window_.ui_scale(), window_.pixel_ratio())),
+      loader_(&Window::wake),
       worker_(&Window::wake) {
   if (!options_.technique.empty())
     state_.settings.technique =
         static_cast<std::size_t>(&find_technique(options_.technique) - technique_table().data());
   state_.settings.shading = options_.shading;
-  if (options_.file.empty()) return;
-  open(options_.file);
-  if (state_.file) apply_options();
+  if (!options_.file.empty()) loader_.load({options_.file});
 }
 
-void App::open(const std::string& path) {
-  try {
-    refuse_source_file(path);
-    state_.file = std::make_shared<const MdkFile>(path);
-  } catch (const Error& error) {
-    show_error(error);
+void App::show_loaded_scene() {
+  state_.baking = loader_.progress();
+  auto scene = loader_.take_loaded();
+  if (!scene) return;
+  redraws_ = kSettlingDraws;
+  if (scene->error) {
+    show_error(*scene->error);
     return;
   }
-  state_.file_name = std::filesystem::path(path).filename().string();
-  state_.playback = Playback(clip_times(state_.file->model()));
+  state_.file = std::move(scene->file);
+  state_.path = scene->path;
+  state_.file_name = std::filesystem::path(scene->path).filename().string();
   state_.last_frame.reset();
   state_.last_work.reset();
   state_.history.clear();
   state_.error.clear();
   shown_ = {};
   full_picture_ms_ = 0;
+  window_.set_title(state_.file_name + " - mdview");
+  if (scene->is_again) {
+    state_.playback.set_clips(clip_times(state_.file->model()));
+    show_notice("Loaded " + state_.file_name + " again: it has changed");
+    return;
+  }
+  state_.playback = Playback(clip_times(state_.file->model()));
   blit_.clear();
   reset_view();
-  window_.set_title(state_.file_name + " - mdview");
+  apply_options();
+}
+
+void App::look_for_changes() {
+  const double now = clock_.seconds();
+  if (now < last_look_time_ + kLookSeconds) return;
+  last_look_time_ = now;
+  loader_.look_for_changes();
 }
 
 void App::apply_options() {
+  if (std::exchange(options_applied_, true)) return;
   if (options_.camera) state_.camera.set(*options_.camera, state_.file->model().bounds);
   if (!options_.clip.empty() && !state_.playback.set_clip(options_.clip)) {
     std::string sentence = "there is no clip \"" + options_.clip + "\"; this file has";
@@ -93,6 +112,8 @@ int App::run() {
     state_.playback.advance(now - last_event_time_);
     last_event_time_ = now;
     handle_events();
+    look_for_changes();
+    show_loaded_scene();
     show_finished_frame();
     update_shown_rate();
     expire_notice();
@@ -107,7 +128,7 @@ void App::handle_events() {
   if (window_.take_activity()) redraws_ = kSettlingDraws;
   for (const KeyEvent& event : window_.take_keys())
     if (const auto action = action_for(event)) execute(*action);
-  for (const std::string& path : window_.take_drops()) open(path);
+  if (auto drops = window_.take_drops(); !drops.empty()) loader_.load(std::move(drops));
 }
 
 void App::execute(const Action& action) {
@@ -130,16 +151,16 @@ void App::execute(const Action& action) {
       playback.go_to_end();
       break;
     case Command::kPreviousTechnique:
-      step_technique(-1);
+      state_.settings.step_technique(-1);
       break;
     case Command::kNextTechnique:
-      step_technique(+1);
+      state_.settings.step_technique(+1);
       break;
     case Command::kTechniqueByNumber:
       if (action.number < technique_table().size()) state_.settings.technique = action.number;
       break;
     case Command::kNextShading:
-      next_shading();
+      state_.settings.next_shading();
       break;
     case Command::kFit:
       if (state_.file) state_.camera.fit(state_.file->model().bounds, picture_aspect());
@@ -153,6 +174,12 @@ void App::execute(const Action& action) {
     case Command::kSaveWindow:
       save_window_ = true;
       break;
+    case Command::kCopyCommand:
+      if (state_.file) copy_render_command();
+      break;
+    case Command::kCancelBake:
+      loader_.cancel();
+      break;
     case Command::kTogglePanel:
       state_.panel = state_.panel == PanelMode::kShown ? PanelMode::kHidden : PanelMode::kShown;
       break;
@@ -164,6 +191,8 @@ void App::execute(const Action& action) {
         state_.help_open = false;
       else if (!state_.error.empty())
         state_.error.clear();
+      else if (state_.baking)
+        loader_.cancel();
       else
         quit_ = true;
       break;
@@ -171,19 +200,6 @@ void App::execute(const Action& action) {
       quit_ = true;
       break;
   }
-}
-
-void App::step_technique(int by) {
-  const auto count = static_cast<int>(technique_table().size());
-  const int row = static_cast<int>(state_.settings.technique) + by;
-  state_.settings.technique = static_cast<std::size_t>((row + count) % count);
-}
-
-void App::next_shading() {
-  const auto modes = shading_table();
-  std::size_t row = 0;
-  while (row < modes.size() && modes[row].mode != state_.settings.shading) ++row;
-  state_.settings.shading = modes[(row + 1) % modes.size()].mode;
 }
 
 void App::reset_view() {
@@ -208,8 +224,8 @@ void App::show_finished_frame() {
     state_.last_work = WorkReport{job.technique, frame->stats.rays, frame->stats.counters};
     return;
   }
-  state_.last_frame = FrameReport{job.technique, job.request.width, job.request.height,
-                                  frame->stats, frame->structure_bytes};
+  state_.last_frame = FrameReport{job.technique, job.request.width,      job.request.height,
+                                  frame->stats,  frame->structure_bytes, frame->note};
   const double ms = frame->stats.time_to_image_ms();
   state_.history.add({job.technique, ms});
   const PixelRect full = picture_pixels();
@@ -261,13 +277,13 @@ bool App::request_picture(Repeat repeat) {
 // Waits for the picture of the state as it is, so that what is printed and saved belongs together.
 void App::settle() {
   motion_ = Motion::kStill;
-  bool asked = true;
-  while (asked || worker_.busy()) {
+  while (true) {
+    const bool busy = worker_.busy() || loader_.busy();
+    show_loaded_scene();
     show_finished_frame();
-    asked = request_picture(Repeat::kNever);
+    if (!request_picture(Repeat::kNever) && !busy) return;
     window_.wait_events(kDrawSeconds);
   }
-  show_finished_frame();
 }
 
 Layout App::layout() const {
@@ -319,7 +335,8 @@ void App::draw() {
   }
   draw_overlays(places.picture, theme_, state_, result);
   result.widgets["picture"] = places.picture;
-  handle_mouse(places.picture);
+  const bool steered = state_.file && steer_by_mouse(state_.camera, places.picture);
+  motion_ = steered || state_.playback.scrubbing() ? Motion::kDragging : Motion::kStill;
   window_.end_frame();
 
   widgets_ = std::move(result.widgets);
@@ -328,33 +345,20 @@ void App::draw() {
   request_picture(Repeat::kAsChosen);
   window_.present();
   // A scripted run with nothing to trace still comes to its end.
-  if (scripted() && (!state_.file || requests_.failed())) ++frames_shown_;
+  const bool nothing_comes = !loader_.busy() && (!state_.file || requests_.failed());
+  if (scripted() && nothing_comes) ++frames_shown_;
 }
 
-void App::handle_mouse(const Rect& picture) {
-  const ImGuiIO& io = ImGui::GetIO();
-  motion_ = state_.playback.scrubbing() ? Motion::kDragging : Motion::kStill;
-  if (io.WantCaptureMouse || !state_.file || !(picture.height > 0)) return;
-  const auto held = [&](ImGuiMouseButton button) {
-    return io.MouseDown[button] && io.MouseDownDuration[button] > 0;
-  };
-  const PictureOffset drag{static_cast<double>(io.MouseDelta.x / picture.height),
-                           static_cast<double>(io.MouseDelta.y / picture.height)};
-  const bool pans = held(ImGuiMouseButton_Middle) || held(ImGuiMouseButton_Right) ||
-                    (held(ImGuiMouseButton_Left) && io.KeyShift);
-  const bool moved = drag.x != 0 || drag.y != 0;
-  if (pans || held(ImGuiMouseButton_Left)) motion_ = Motion::kDragging;
-  if (pans && moved)
-    state_.camera.pan(drag);
-  else if (held(ImGuiMouseButton_Left) && moved)
-    state_.camera.orbit(drag);
+std::string App::render_command_of_picture() const {
+  if (!state_.file) return {};
+  const Playback& playback = state_.playback;
+  return render_command(wanted_job(), state_.path, playback.clips()[playback.clip()].name,
+                        playback.time());
+}
 
-  if (io.MouseWheel != 0 && picture.contains(io.MousePos.x, io.MousePos.y)) {
-    const PictureOffset pointer{
-        static_cast<double>((io.MousePos.x - picture.x - picture.width / 2) / picture.height),
-        static_cast<double>((io.MousePos.y - picture.y - picture.height / 2) / picture.height)};
-    state_.camera.zoom(static_cast<double>(io.MouseWheel), pointer);
-  }
+void App::copy_render_command() {
+  window_.set_clipboard(render_command_of_picture());
+  show_notice("Copied the mdprep command that renders this picture");
 }
 
 void App::save_picture() {
@@ -390,7 +394,7 @@ void App::finish() {
   }
   if (options_.print_state)
     std::cout << state_json(state_, {frames_shown_, window_draws_, window_.width(),
-                                     window_.height(), widgets_})
+                                     window_.height(), widgets_, render_command_of_picture()})
               << std::endl;
 }
 

@@ -14,6 +14,7 @@
 #include "viewer/render_worker.h"
 #include "viewer/request_policy.h"
 #include "viewer/resolution.h"
+#include "viewer/scene_loader.h"
 #include "viewer/side_panel.h"
 #include "viewer/style.h"
 #include "viewer/texture_blit.h"
@@ -33,15 +34,14 @@ class App {
   int run();
 
  private:
-  void open(const std::string& path);
+  void show_loaded_scene();
+  void look_for_changes();
   void apply_options();
   void show_error(const Error& error);
   void show_notice(const std::string& sentence);
 
   void handle_events();
   void execute(const Action& action);
-  void step_technique(int by);
-  void next_shading();
   void reset_view();
 
   void show_finished_frame();
@@ -59,7 +59,8 @@ class App {
   double seconds_to_wait() const;
   bool draw_is_due() const;
   void draw();
-  void handle_mouse(const Rect& picture);
+  std::string render_command_of_picture() const;  // empty without a file
+  void copy_render_command();
   void save_picture();
   void save_window();
   void save(const Picture& picture);
@@ -81,7 +82,8 @@ class App {
   double notice_until_ = 0;
   int redraws_ = 1;  ///< ImGui needs a few drawings to settle after an event
   Motion motion_ = Motion::kStill;
-  bool quit_ = false, save_window_ = false;
+  double last_look_time_ = 0;  ///< at the files on disk
+  bool quit_ = false, save_window_ = false, options_applied_ = false;
 
   RequestPolicy requests_;
   double full_picture_ms_ = 0;  ///< the last frame's time, scaled to full resolution
@@ -89,7 +91,9 @@ class App {
   std::deque<double> shown_times_;
   std::uint64_t frames_shown_ = 0, window_draws_ = 0;
 
-  RenderWorker worker_;  ///< last: it goes first, while the window still can be woken
+  SceneLoader loader_;
+  RenderWorker
+      worker_;  ///< last, with the loader: they go first, while the window still can be woken
 };
 
 }  // namespace mdk

@@ -22,9 +22,11 @@ enum class Command {
   kResetView,
   kSavePicture,
   kSaveWindow,
+  kCopyCommand,  ///< the mdprep render command line of the picture, to the clipboard
+  kCancelBake,
   kTogglePanel,
   kToggleHelp,
-  kDismiss,  ///< closes help or the error that stands; with neither, quits
+  kDismiss,  ///< closes help or the error that stands, or cancels a bake; else quits
   kQuit,
 };
 

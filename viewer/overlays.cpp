@@ -29,15 +29,42 @@ void draw_welcome(const Rect& picture, const Theme& theme) {
   ImGui::SetNextWindowSize({std::min(picture.width, 560 * theme.scale), 0});
   ImGui::SetNextWindowBgAlpha(0);
   ImGui::Begin("##welcome", nullptr, kFloating | ImGuiWindowFlags_NoInputs);
-  centered_text("Drop an .mdk file here", theme.fonts.large, kTextColor);
+  centered_text("Drop an animation here", theme.fonts.large, kTextColor);
   ImGui::Spacing();
-  centered_text("or start with one:   mdview hand.mdk", theme.fonts.text, kDimColor);
+  centered_text(".mdk opens at once; .glb, .gltf, or an .obj with its .pc2 or .mdd is baked first",
+                theme.fonts.text, kDimColor);
   ImGui::Spacing();
-  centered_text("An animation becomes an .mdk file by", theme.fonts.text, kDimColor);
+  centered_text("To keep what is baked", theme.fonts.text, kDimColor);
   centered_text("mdprep bake hand.glb -o hand.mdk", theme.fonts.text, kTextColor);
   ImGui::Spacing();
   centered_text("Press ? for the keys", theme.fonts.text, kDimColor);
   ImGui::End();
+}
+
+void draw_baking(const Rect& picture, const Theme& theme, const SceneLoader::Progress& baking,
+                 UiResult& result) {
+  const float width = std::min(picture.width, 380 * theme.scale);
+  ImGui::SetNextWindowPos({picture.x + picture.width / 2, picture.y + picture.height / 2},
+                          ImGuiCond_Always, {0.5f, 0.5f});
+  ImGui::SetNextWindowSize({width, 0});
+  ImGui::PushStyleColor(ImGuiCol_WindowBg, kFloatingColor);
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 10 * theme.scale);
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(20 * theme.scale, 16 * theme.scale));
+  ImGui::Begin("##baking", nullptr, kFloating);
+  ImGui::PushFont(theme.fonts.strong);
+  ImGui::TextUnformatted(("Baking " + baking.name).c_str());
+  ImGui::PopFont();
+  ImGui::ProgressBar(static_cast<float>(baking.bake.fraction), {-1, 6 * theme.scale}, "");
+  ImGui::AlignTextToFramePadding();
+  ImGui::TextDisabled("%s", baking.bake.text.empty() ? "starting" : baking.bake.text.c_str());
+  record(result.widgets, "bake-progress");
+  const float button = 80 * theme.scale;
+  ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - button);
+  if (ImGui::Button("Cancel", {button, 0})) result.actions.push_back({Command::kCancelBake});
+  record(result.widgets, "cancel-bake");
+  ImGui::End();
+  ImGui::PopStyleVar(2);
+  ImGui::PopStyleColor();
 }
 
 void draw_error(const Rect& picture, const Theme& theme, ViewState& state, UiResult& result) {
@@ -106,7 +133,8 @@ void draw_help(const Rect& picture, const Theme& theme, UiResult& result) {
 }  // namespace
 
 void draw_overlays(const Rect& picture, const Theme& theme, ViewState& state, UiResult& result) {
-  if (!state.file && !state.help_open) draw_welcome(picture, theme);
+  if (!state.file && !state.baking && !state.help_open) draw_welcome(picture, theme);
+  if (state.baking) draw_baking(picture, theme, *state.baking, result);
   if (!state.error.empty()) draw_error(picture, theme, state, result);
   if (!state.notice.empty()) draw_notice(picture, theme, state.notice);
   if (state.help_open) draw_help(picture, theme, result);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace mdk {
 
@@ -12,6 +13,15 @@ std::vector<ClipTimes> clip_times(const Model& model) {
     clips.push_back({clip.name, {times.begin(), times.end()}});
   }
   return clips;
+}
+
+void Playback::set_clips(std::vector<ClipTimes> clips) {
+  const std::string name = clips_.empty() ? std::string() : clips_[clip_].name;
+  const double time = time_;
+  clips_ = std::move(clips);
+  clip_ = 0;
+  set_clip(name);
+  seek(time);
 }
 
 std::size_t Playback::key() const {

@@ -38,6 +38,9 @@ class Playback {
   /// Stands at the start of the first clip, paused.
   explicit Playback(std::vector<ClipTimes> clips) : clips_(std::move(clips)) {}
 
+  /// Other clips: goes on in the one of the same name at the same time, as far as there is one.
+  void set_clips(std::vector<ClipTimes> clips);
+
   const std::vector<ClipTimes>& clips() const { return clips_; }
   std::size_t clip() const { return clip_; }
   double time() const { return time_; }

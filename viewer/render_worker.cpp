@@ -73,6 +73,7 @@ FinishedFrame RenderWorker::render(RenderJob job) {
     if (renderer_->technique_id() != id) renderer_->set_technique(id);
     frame.stats = renderer_->render(job.request);
     frame.structure_bytes = renderer_->structure_bytes();
+    frame.note = renderer_->technique_note();
     const auto pixels = renderer_->pixels();
     frame.pixels.assign(pixels.begin(), pixels.end());
   } catch (const std::exception& failure) {

@@ -32,6 +32,7 @@ struct FinishedFrame {
   std::string error;  ///< a sentence where there is no picture, else empty
   FrameStats stats;
   std::size_t structure_bytes = 0;
+  std::string note;                   ///< Technique::note()
   std::vector<std::uint32_t> pixels;  ///< sRGB RGBA, row 0 on top
 };
 

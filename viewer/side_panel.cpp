@@ -20,7 +20,7 @@ void draw_file_facts(const Theme& theme, const ViewState& state) {
   ImGui::PopFont();
   const Model* model = state.model();
   if (!model) {
-    ImGui::TextDisabled("drop an .mdk file on the window");
+    ImGui::TextDisabled("drop an animation on the window");
     return;
   }
   if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", state.file->path().c_str());
@@ -130,6 +130,11 @@ void draw_frame_times(const Theme& theme, const ViewState& state) {
   fact("Hits", hits.data());
   fact("Picture", std::to_string(frame.width) + " x " + std::to_string(frame.height));
   fact("Structures", bytes_text(frame.structure_bytes));
+  if (!frame.note.empty()) {
+    ImGui::PushTextWrapPos(0);
+    ImGui::TextDisabled("Chosen: %s", frame.note.c_str());
+    ImGui::PopTextWrapPos();
+  }
 }
 
 void draw_work(const Theme& theme, ViewState& state, UiResult& result) {
@@ -181,7 +186,8 @@ void draw_view(const Theme& theme, ViewState& state, UiResult& result) {
   button("Reset", "Back to the first view (R)", Command::kResetView);
   record(result.widgets, "reset-view");
   ImGui::SameLine();
-  button("Save", "Save the picture as PNG (P)", Command::kSavePicture);
+  button("Save", "Save the picture as PNG (P); C copies the mdprep command that makes it",
+         Command::kSavePicture);
   record(result.widgets, "save-picture");
   ImGui::Checkbox("Keep tracing while paused", &state.settings.keep_tracing);
   record(result.widgets, "keep-tracing");

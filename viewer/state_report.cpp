@@ -28,7 +28,8 @@ Json frame_json(const ViewState& state) {
                {"prebuild_ms", frame.stats.prebuild_ms},
                {"rays", frame.stats.rays},
                {"hits", frame.stats.hits},
-               {"structure_bytes", frame.structure_bytes}};
+               {"structure_bytes", frame.structure_bytes},
+               {"note", frame.note}};
   const auto& work = state.last_work;
   const bool counted = work && work->rays > 0 && work->technique == frame.technique;
   const auto per_ray = [&](std::uint64_t TraceCounters::*count) -> Json {
@@ -78,7 +79,8 @@ const char* resolution_id(Resolution resolution) {
 std::string state_json(const ViewState& state, const WindowReport& window) {
   const Playback& playback = state.playback;
   Json json = {{"schema", "mdview-state/1"}};
-  json["file"] = state.file ? Json(state.file->path()) : Json();
+  json["file"] = state.file ? Json(state.path) : Json();
+  json["baking"] = state.baking ? Json(state.baking->name) : Json();
   json["technique"] = technique_table()[state.settings.technique].id;
   json["shading"] = shading_id(state.settings.shading);
   json["clip"] = playback.clips().empty() ? Json() : Json(playback.clips()[playback.clip()].name);
@@ -97,6 +99,7 @@ std::string state_json(const ViewState& state, const WindowReport& window) {
   json["panel"] = state.panel == PanelMode::kShown;
   json["error"] = state.error.empty() ? Json() : Json(state.error);
   json["notice"] = state.notice.empty() ? Json() : Json(state.notice);
+  json["render_command"] = window.render_command.empty() ? Json() : Json(window.render_command);
   json["window"] = {window.width, window.height};
   Json& widgets = json["widgets"] = Json::object();
   for (const auto& [name, r] : window.widgets) widgets[name] = {r.x, r.y, r.width, r.height};

@@ -58,6 +58,7 @@ void set_colors(ImGuiStyle& style) {
   c[ImGuiCol_HeaderHovered] = faded(0.13f);
   c[ImGuiCol_HeaderActive] = faded(0.28f);
   c[ImGuiCol_CheckMark] = accent;
+  c[ImGuiCol_PlotHistogram] = accent;
   c[ImGuiCol_SliderGrab] = accent;
   c[ImGuiCol_SliderGrabActive] = accent;
   c[ImGuiCol_Separator] = rgb(255, 255, 255, 0.07f);

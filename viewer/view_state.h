@@ -14,6 +14,7 @@
 #include "viewer/layout.h"
 #include "viewer/orbit_camera.h"
 #include "viewer/playback.h"
+#include "viewer/scene_loader.h"
 
 namespace mdk {
 
@@ -30,6 +31,10 @@ struct ViewSettings {
   Resolution resolution = Resolution::kAuto;
   bool count_work = false;    ///< trace an extra counting frame now and then
   bool keep_tracing = false;  ///< trace again although nothing has changed, to watch the times
+
+  /// To another row of the table, around its ends.
+  void step_technique(int by);
+  void next_shading();
 };
 
 /// The last picture shown and what it cost.
@@ -38,6 +43,7 @@ struct FrameReport {
   std::uint32_t width = 0, height = 0;
   FrameStats stats;  ///< without counters
   std::size_t structure_bytes = 0;
+  std::string note;  ///< what the technique chose, where it chooses
 };
 
 /// What the last counting frame counted.
@@ -48,8 +54,10 @@ struct WorkReport {
 };
 
 struct ViewState {
-  std::shared_ptr<const MdkFile> file;  ///< null: nothing is open
-  std::string file_name;                ///< without its folders
+  std::shared_ptr<const MdkFile> file;          ///< null: nothing is open
+  std::string path;                             ///< of it, or of the source file it was baked from
+  std::string file_name;                        ///< without its folders
+  std::optional<SceneLoader::Progress> baking;  ///< of a source file, while that goes on
   ViewSettings settings;
   Playback playback;
   OrbitCamera camera;

@@ -106,6 +106,10 @@ void Window::install_callbacks(GLFWwindow* window) {
 bool Window::should_close() const { return glfwWindowShouldClose(window_); }
 void Window::set_title(const std::string& title) { glfwSetWindowTitle(window_, title.c_str()); }
 
+void Window::set_clipboard(const std::string& text) {
+  glfwSetClipboardString(window_, text.c_str());
+}
+
 void Window::wait_events(double seconds) {
   if (seconds > 0)
     glfwWaitEventsTimeout(seconds);

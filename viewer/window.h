@@ -33,6 +33,7 @@ class Window {
 
   bool should_close() const;
   void set_title(const std::string& title);
+  void set_clipboard(const std::string& text);
 
   /// Sleeps until something happens, wake() is called, or `seconds` have passed.
   void wait_events(double seconds);

@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <set>
 
 #include "common/trace/technique.h"
@@ -93,6 +95,10 @@ class MdviewGui : public testing::Test {
     }
     return {static_cast<int>(r[0].get<double>() + across * r[2].get<double>()),
             static_cast<int>(r[1].get<double>() + down * r[3].get<double>())};
+  }
+
+  void write_text(const std::string& name, const std::string& text) {
+    std::ofstream(folder_.file(name)) << text;
   }
 
   TempFolder folder_;
@@ -289,10 +295,10 @@ TEST_F(MdviewGui, ScriptedRunsOnBadFilesEndWithTheirStatus) {
   EXPECT_EQ(result.status, 3);
   EXPECT_THAT(result.state["error"].get<std::string>(), HasSubstr("cut.mdk"));
 
-  result = start({"hand.glb", "--quit-after", "2"})->finish();
+  write_text("bad.glb", "no model at all");
+  result = start({"bad.glb", "--quit-after", "2"})->finish();
   EXPECT_EQ(result.status, 3);
-  EXPECT_THAT(result.state["error"].get<std::string>(),
-              HasSubstr("mdprep bake hand.glb -o hand.mdk"));
+  EXPECT_THAT(result.state["error"].get<std::string>(), HasSubstr("bad.glb"));
 
   result = start({"bar.mdk", "--clip", "dance", "--quit-after", "2"})->finish();
   EXPECT_EQ(result.status, 2);
@@ -304,12 +310,51 @@ TEST_F(MdviewGui, AFileDroppedOnTheWindowIsOpenedAndABadOneLeavesTheOldOneOpen) 
   session->wait_for_window();
   drop_file(server_->display(), "mdview", folder_.file("bar.mdk"));
   session->xdotool({"sleep", "1"});
-  drop_file(server_->display(), "mdview", folder_.file("hand.glb"));
+  write_text("bad.glb", "no model at all");
+  drop_file(server_->display(), "mdview", folder_.file("bad.glb"));
+  session->xdotool({"sleep", "1"});
   const auto state = session->quit().state;
   EXPECT_EQ(state["file"], folder_.file("bar.mdk"));
   EXPECT_EQ(state["clip"], "wave");
   EXPECT_GT(state["last_frame"]["hits"], 0);
-  EXPECT_THAT(state["error"].get<std::string>(), HasSubstr("mdprep bake"));
+  EXPECT_THAT(state["error"].get<std::string>(), HasSubstr("bad.glb"));
+}
+
+TEST_F(MdviewGui, ASourceFileIsBakedFirst) {
+  write_text("square.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n");
+  const auto result = start({"square.obj", "--size", "640x400", "--quit-after", "2"})->finish();
+  EXPECT_EQ(result.status, 0) << result.messages;
+  EXPECT_EQ(result.state["file"], "square.obj");
+  EXPECT_TRUE(result.state["baking"].is_null());
+  EXPECT_GT(result.state["last_frame"]["hits"], 1000);
+}
+
+TEST_F(MdviewGui, AFileThatChangesOnDiskIsLoadedAgainInTheSameView) {
+  const auto session = start_on_bar({"--clip", "nod"});
+  session->click(in_widget("time-line", 0.5));
+  session->drag(in_widget("picture"), {90, 20});
+  write_mdk(waving_bar().view(), folder_.file("bar.mdk"));
+  session->xdotool({"sleep", "2"});
+  const auto state = session->quit().state;
+  EXPECT_THAT(state["notice"].get<std::string>(), HasSubstr("again"));
+  EXPECT_EQ(state["clip"], "nod");
+  EXPECT_NEAR(state["time"], 0.2, 0.01);
+  EXPECT_GT(state["last_frame"]["hits"], 100);
+}
+
+TEST_F(MdviewGui, TheCopiedCommandRendersTheSamePicture) {
+  const auto session = start_on_bar({"--clip", "nod", "--time", "0.13", "--shading", "normals"});
+  session->drag(in_widget("picture"), {90, 20});
+  session->key("c");
+  session->key("p");
+  const auto state = session->quit().state;
+  std::string command = state["render_command"];
+  ASSERT_THAT(command, testing::StartsWith("mdprep render bar.mdk -o bar.png"));
+  command.replace(0, 6, MDK_MDPREP);
+  ASSERT_EQ(std::system(("cd '" + folder_.path() + "' && " + command).c_str()), 0) << command;
+  const Image rendered = read_png(folder_.file("bar.png"));
+  EXPECT_EQ(rendered.pixels, read_png(folder_.file("bar-0001.png")).pixels);
+  EXPECT_GT(count_colors(rendered.pixels), 50u);
 }
 
 TEST_F(MdviewGui, OpensWithoutAFile) {

@@ -8,7 +8,6 @@
 
 #include "common/base/error.h"
 #include "common/trace/technique.h"
-#include "viewer/source_file.h"
 
 namespace mdk {
 namespace {
@@ -122,18 +121,6 @@ TEST(ViewerOptions, HelpAndVersionAnswerOnStdoutAndStartNothing) {
     EXPECT_THAT(said, HasSubstr(option));
   EXPECT_FALSE(parse({"--version"}, &said));
   EXPECT_THAT(said, HasSubstr("mdview"));
-}
-
-TEST(SourceFile, SaysHowToBakeWhatCannotBeViewed) {
-  EXPECT_NO_THROW(refuse_source_file("hand.mdk"));
-  EXPECT_NO_THROW(refuse_source_file("glb"));
-  try {
-    refuse_source_file("some/where/Hand.GLB");
-    FAIL() << "accepted";
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ErrorCode::kBadInput);
-    EXPECT_THAT(error.what(), HasSubstr("mdprep bake some/where/Hand.GLB -o Hand.mdk"));
-  }
 }
 
 }  // namespace

@@ -1,0 +1,145 @@
+// From paths to models: opened, baked by the real mdprep, cancelled, loaded again.
+#include "viewer/scene_loader.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <thread>
+
+#include "formats/mdk_writer.h"
+#include "tests/formats/temp_folder.h"
+#include "tests/viewer/waving_bar.h"
+#include "viewer/bake_process.h"
+
+namespace mdk::test {
+namespace {
+
+using testing::HasSubstr;
+using testing::StartsWith;
+
+constexpr const char* kSquare = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n";
+
+void write_text(const std::string& path, const std::string& text) { std::ofstream(path) << text; }
+
+/// A sheet of side * side squares: much work for a baker.
+std::string large_obj(int side) {
+  std::string text;
+  for (int y = 0; y <= side; ++y)
+    for (int x = 0; x <= side; ++x)
+      text += "v " + std::to_string(x) + " " + std::to_string(y) + " " +
+              std::to_string((x * y) % 7) + "\n";
+  for (int y = 0; y < side; ++y)
+    for (int x = 0; x < side; ++x) {
+      const int a = y * (side + 1) + x + 1;
+      text += "f " + std::to_string(a) + " " + std::to_string(a + 1) + " " +
+              std::to_string(a + side + 2) + " " + std::to_string(a + side + 1) + "\n";
+    }
+  return text;
+}
+
+template <class Condition>
+bool soon(const Condition& condition) {
+  for (int i = 0; i < 3000; ++i) {
+    if (condition()) return true;
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  return false;
+}
+
+class SceneLoading : public testing::Test {
+ protected:
+  void SetUp() override {
+    std::filesystem::create_directory(scratch_);
+    ::setenv("TMPDIR", scratch_.c_str(), 1);
+  }
+  void TearDown() override { ::unsetenv("TMPDIR"); }
+
+  LoadedScene load(std::vector<std::string> paths) {
+    loader_.load(std::move(paths));
+    return wait();
+  }
+  LoadedScene wait() {
+    std::optional<LoadedScene> scene;
+    EXPECT_TRUE(soon([&] { return (scene = loader_.take_loaded()).has_value(); }));
+    return scene.value_or(LoadedScene{});
+  }
+
+  TempFolder folder_;
+  std::string scratch_ = folder_.file("scratch");
+  SceneLoader loader_{[] {}};
+};
+
+TEST_F(SceneLoading, OpensABakedFile) {
+  const std::string path = folder_.file("bar.mdk");
+  write_mdk(waving_bar().view(), path);
+  const LoadedScene scene = load({path});
+  ASSERT_TRUE(scene.file);
+  EXPECT_EQ(scene.path, path);
+  EXPECT_FALSE(scene.is_again);
+}
+
+TEST_F(SceneLoading, BakesASourceFileAndLeavesNothingBehind) {
+  const std::string path = folder_.file("square.obj");
+  write_text(path, kSquare);
+  const LoadedScene scene = load({path});
+  ASSERT_TRUE(scene.file) << scene.error->what();
+  EXPECT_EQ(scene.file->model().triangle_count(), 2u);
+  EXPECT_EQ(scene.path, path);
+  EXPECT_TRUE(std::filesystem::is_empty(scratch_));
+}
+
+TEST_F(SceneLoading, GivesMdprepsSentenceAndStatusForABadSource) {
+  const std::string path = folder_.file("bad.glb");
+  write_text(path, "no model");
+  const LoadedScene scene = load({path});
+  ASSERT_TRUE(scene.error);
+  EXPECT_EQ(scene.error->code(), ErrorCode::kBadInput);
+  EXPECT_THAT(scene.error->what(), StartsWith(path + ": "));
+  EXPECT_TRUE(std::filesystem::is_empty(scratch_));
+}
+
+TEST_F(SceneLoading, ABakeCanBeCancelled) {
+  const std::string path = folder_.file("sheet.obj");
+  write_text(path, large_obj(400));
+  loader_.load({path});
+  ASSERT_TRUE(soon([&] { return loader_.progress().has_value(); }));
+  EXPECT_EQ(loader_.progress()->name, "sheet.obj");
+  loader_.cancel();
+  EXPECT_FALSE(loader_.busy());
+  EXPECT_FALSE(loader_.progress());
+  EXPECT_FALSE(loader_.take_loaded());
+  EXPECT_TRUE(std::filesystem::is_empty(scratch_));
+}
+
+TEST_F(SceneLoading, AFileThatChangesIsLoadedAgainAndOneThatDoesNotIsNot) {
+  const std::string path = folder_.file("square.obj");
+  write_text(path, kSquare);
+  ASSERT_TRUE(load({path}).file);
+  loader_.look_for_changes();
+  EXPECT_FALSE(loader_.busy());
+  write_text(path, std::string(kSquare) + "v 2 2 1\nf 2 5 3\n");
+  loader_.look_for_changes();
+  EXPECT_TRUE(loader_.busy());
+  const LoadedScene scene = wait();
+  EXPECT_TRUE(scene.is_again);
+  ASSERT_TRUE(scene.file);
+  EXPECT_EQ(scene.file->model().triangle_count(), 3u);
+}
+
+TEST(BakeProgressText, IsReadFromTheBarAndFromNothingElse) {
+  const auto bar =
+      parse_bake_progress("\x1b[K[##########--------------]  42 %  decompose, 0:12 left");
+  ASSERT_TRUE(bar);
+  EXPECT_DOUBLE_EQ(bar->fraction, 0.42);
+  EXPECT_EQ(bar->text, " 42 %  decompose, 0:12 left");
+  for (const char* line : {"", "[", "[###] ", "[###] soon", "mdprep: walk.glb: is cut", "42 %"})
+    EXPECT_FALSE(parse_bake_progress(line)) << line;
+}
+
+}  // namespace
+}  // namespace mdk::test
