@@ -14,11 +14,14 @@ namespace {
 constexpr std::uint32_t kFewClusters = 8;  // with more, a stage that saves nothing is the last
 
 BoxGrowthStep describe(const BoxProblem& problem, const BoxClustering& clustering) {
-  double residual = 0;
-  for (const BoxCluster& c : clustering.clusters) residual += c.residual;
+  double residual = 0, area = 0;
+  for (const BoxCluster& c : clustering.clusters) {
+    residual += c.residual;
+    area += c.work.fuzzy_boxes.area(c.work.weights);
+  }
   const double terms =
       3.0 * static_cast<double>(problem.mesh.triangles.size()) * problem.mesh.poses.row_count();
-  return {clustering.cluster_count(), std::sqrt(residual / terms), clustering.cost};
+  return {clustering.cluster_count(), std::sqrt(residual / terms), clustering.cost, area};
 }
 
 /// Exactly `count` clusters, whether motion asks for them or not.

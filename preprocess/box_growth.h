@@ -24,6 +24,7 @@ struct BoxGrowthStep {
   std::uint32_t clusters = 0;
   double residual_rms = 0;  ///< per corner and row, table units
   double cost = 0;
+  double fuzzy_area = 0;  ///< the part of the cost that is fuzzy_area (preprocess/cost.h)
 };
 
 struct BoxGrowth {

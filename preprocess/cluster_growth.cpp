@@ -40,10 +40,17 @@ Clustering grown(const MovingMesh& mesh, const Clustering& start, std::uint32_t 
   return kept.cluster_count > start.cluster_count ? kept : start;
 }
 
+LocalFrames best_frames(const MovingMesh& mesh, const Clustering& clustering,
+                        const CostOptions& options) {
+  return choose_local_frames(mesh.poses, members_of(mesh, clustering), clustering.maps.maps,
+                             options);
+}
+
 GrowthStep describe(const MovingMesh& mesh, const Clustering& clustering,
                     const CostOptions& options) {
+  const LocalFrames frames = best_frames(mesh, clustering, options);
   return {clustering.cluster_count, residual_rms(mesh, clustering),
-          clustering_cost(mesh, clustering, options)};
+          expected_work(frames.clusters, options), fuzzy_area(frames.clusters)};
 }
 
 /// The rule that ends growth, watching step after step; remembers the clustering to return.
@@ -102,9 +109,7 @@ double residual_rms(const MovingMesh& mesh, const Clustering& clustering) {
 
 double clustering_cost(const MovingMesh& mesh, const Clustering& clustering,
                        const CostOptions& options) {
-  const LocalFrames frames =
-      choose_local_frames(mesh.poses, members_of(mesh, clustering), clustering.maps.maps, options);
-  return expected_work(frames.clusters, options);
+  return expected_work(best_frames(mesh, clustering, options).clusters, options);
 }
 
 Clustering with_papers_rest_pose(const MovingMesh& mesh, const Clustering& clustering) {

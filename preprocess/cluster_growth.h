@@ -28,6 +28,7 @@ struct GrowthStep {
   std::uint32_t clusters = 0;
   double residual_rms = 0;  ///< per corner, table units
   double cost = 0;          ///< expected_work over the table's rows
+  double fuzzy_area = 0;    ///< the part of the cost that is fuzzy_area
 };
 
 struct Growth {

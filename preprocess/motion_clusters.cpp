@@ -186,7 +186,7 @@ MotionClusters cluster_by_boxes(const PoseSequence& sequence, const DecomposeOpt
   rough.steps.pop_back();  // the fine growth starts with it again
   for (const std::vector<BoxGrowthStep>& steps : {rough.steps, growth.steps})
     for (const BoxGrowthStep& s : steps)
-      result.steps.push_back({s.clusters, s.residual_rms, s.cost});
+      result.steps.push_back({s.clusters, s.residual_rms, s.cost, s.fuzzy_area});
   return result;
 }
 
@@ -212,7 +212,7 @@ MotionClusters cluster_by_residuals(const PoseSequence& sequence, const Decompos
   result.rest_key = few.keys[growth.clustering.rest_row];
   result.stop_reason = growth.stop_reason;
   for (const GrowthStep& s : growth.steps)
-    result.steps.push_back({s.clusters, s.residual_rms, s.cost});
+    result.steps.push_back({s.clusters, s.residual_rms, s.cost, s.fuzzy_area});
   const PoseTable many = sampled_table(
       sequence, std::max<std::size_t>(kResidualPolishEntries / vertices, few.row_count()),
       result.rest_key, unit);

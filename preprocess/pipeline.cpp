@@ -114,7 +114,7 @@ DecomposeStats make_stats(const MotionClusters& decision, const AssembledModel& 
   stats.residual_max = residual.max / length;
   stats.sah_cost = assembled.expected_work;
   for (const ClusteringStep& s : decision.steps)
-    stats.steps.push_back({s.clusters, s.residual_rms * unit / length, s.sah_cost});
+    stats.steps.push_back({s.clusters, s.residual_rms * unit / length, s.sah_cost, s.fuzzy_area});
   return stats;
 }
 

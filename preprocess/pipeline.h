@@ -45,6 +45,7 @@ struct ClusteringStep {
   double residual_rms = 0;  ///< about the boxes' middles (with stop_percent: the rest pose),
                             ///< relative to the rest pose's diagonal
   double sah_cost = 0;      ///< expected work per ray that meets the model (docs/method.md, cost)
+  double fuzzy_area = 0;    ///< summed area of the fuzzy boxes, in areas of the model's box
 };
 
 struct DecomposeStats {

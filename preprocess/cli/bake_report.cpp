@@ -28,6 +28,12 @@ std::string bake_report_json(const Model& model, const DecomposeStats& stats,
   Json quantization = nullptr;
   if (stats.quantization)
     quantization = {{"bound", stats.quantization->bound}, {"largest", stats.quantization->largest}};
+  Json growth = Json::array();
+  for (const ClusteringStep& step : stats.steps)
+    growth.push_back({{"clusters", step.clusters},
+                      {"residual_rms", step.residual_rms},
+                      {"fuzzy_area", step.fuzzy_area},
+                      {"sah_cost", step.sah_cost}});
   const Json report = {
       {"schema", "mdprep-bake/1"},
       {"input", outcome.input},
@@ -52,6 +58,7 @@ std::string bake_report_json(const Model& model, const DecomposeStats& stats,
         {"total", outcome.seconds.total}}},
       {"peak_memory_bytes", outcome.peak_memory_bytes},
       {"file_bytes", outcome.file_bytes},
+      {"growth", growth},
   };
   return report.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

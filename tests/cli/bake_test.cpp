@@ -32,11 +32,11 @@ TEST_F(Bake, TheReportHasExactlyTheFieldsOfTheContract) {
       {"bake", source(), "-o", folder_.file("a.mdk"), "--report", folder_.file("a.json")});
   ASSERT_EQ(bake.status, 0) << bake.err;
   const Json report = Json::parse(read_text(folder_.file("a.json")));
-  EXPECT_EQ(names_of(report),
-            (std::vector<std::string>{
-                "schema", "input", "triangles", "vertices", "keys", "clips", "clusters", "segments",
-                "rest_key", "stop_reason", "residual_rms", "residual_max", "quantization",
-                "sah_cost", "refine_gain", "seconds", "peak_memory_bytes", "file_bytes"}));
+  EXPECT_EQ(names_of(report), (std::vector<std::string>{
+                                  "schema", "input", "triangles", "vertices", "keys", "clips",
+                                  "clusters", "segments", "rest_key", "stop_reason", "residual_rms",
+                                  "residual_max", "quantization", "sah_cost", "refine_gain",
+                                  "seconds", "peak_memory_bytes", "file_bytes", "growth"}));
   EXPECT_EQ(names_of(report["seconds"]),
             (std::vector<std::string>{"read", "decompose", "build", "write", "total"}));
   EXPECT_EQ(report["schema"], "mdprep-bake/1");
@@ -50,6 +50,9 @@ TEST_F(Bake, TheReportHasExactlyTheFieldsOfTheContract) {
   EXPECT_LT(report["refine_gain"], 1.0);
   EXPECT_EQ(report["file_bytes"], std::filesystem::file_size(folder_.file("a.mdk")));
   EXPECT_GT(report["peak_memory_bytes"], 1u << 20);
+  EXPECT_EQ(names_of(report["growth"][0]),
+            (std::vector<std::string>{"clusters", "residual_rms", "fuzzy_area", "sah_cost"}));
+  EXPECT_EQ(report["growth"][0]["clusters"], 1);
   EXPECT_GT(report["sah_cost"], 0.0);
   EXPECT_GE(report["clusters"], 2) << "a bending tube and a cube that swings round it";
   EXPECT_LE(report["residual_rms"], report["residual_max"]);

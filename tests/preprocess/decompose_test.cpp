@@ -290,7 +290,9 @@ TEST(Decompose, StepsStartWithOneClusterAndEndWithWhatThereIs) {
   for (std::size_t i = 1; i < steps.size(); ++i) {
     EXPECT_GT(steps[i].clusters, steps[i - 1].clusters);
     EXPECT_LT(steps[i].sah_cost, steps[i - 1].sah_cost);
+    EXPECT_LT(steps[i].fuzzy_area, steps[i - 1].fuzzy_area);
   }
+  for (const ClusteringStep& step : steps) EXPECT_LT(step.fuzzy_area, step.sah_cost);
   EXPECT_LT(steps.back().residual_rms, 0.01 * steps.front().residual_rms);
 }
 
