@@ -92,17 +92,24 @@ std::string technique_ids() {
 
 std::vector<std::string> parse_techniques(const std::string& text) {
   std::vector<std::string> ids;
-  if (text == "all") {
-    for (const TechniqueInfo& technique : technique_table())
-      if (technique.kind != TechniqueKind::kOracle) ids.emplace_back(technique.id);
-    return ids;
-  }
   for (const std::string& id : split(text, ',')) {
+    if (id == "all" && ids.empty()) {
+      for (const TechniqueInfo& technique : technique_table())
+        if (technique.kind != TechniqueKind::kOracle) ids.emplace_back(technique.id);
+      continue;
+    }
+    if (id.starts_with('-')) {
+      find_technique(id.substr(1));
+      std::erase(ids, id.substr(1));
+      continue;
+    }
     find_technique(id);
     if (std::find(ids.begin(), ids.end(), id) != ids.end())
       throw Error(ErrorCode::kUsage, "--techniques " + text + ": " + id + " is named twice");
     ids.push_back(id);
   }
+  if (ids.empty())
+    throw Error(ErrorCode::kUsage, "--techniques " + text + ": leaves no technique to measure");
   return ids;
 }
 

@@ -41,7 +41,8 @@ Camera choose_camera(const ViewOptions& options, const Aabb& bounds, ImageSize s
 /// "fuzzy-kdtree, static-kdtree, ...": for help texts.
 std::string technique_ids();
 
-/// "all" (every technique but brute force) or a list with commas; throws Error (kUsage).
+/// A list with commas; "all" stands for every technique but brute force, and "-ID" takes one out of
+/// those before it. Throws Error (kUsage).
 std::vector<std::string> parse_techniques(const std::string& text);
 
 }  // namespace mdk

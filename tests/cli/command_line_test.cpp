@@ -119,8 +119,19 @@ TEST_F(CommandLine, WrongUseIsStatus2AndOneSentence) {
       {"bench", baked(), "--techniques", "fuzzy-kdtree,magic"},
       {"bench", baked(), "--frames", "0"},
       {"bench", baked(), "--rounds", "0"},
-      {"bench", baked(), "--html", out("x.html")},
       {"bench", baked(), "--json", out("x"), "--csv", out("x")},
+      {"bench", baked(), "--html", out("x"), "--json", out("x")},
+      {"bench", baked(), "--html", baked()},
+      {"bench", baked(), "--judge", "0"},
+      {"bench", baked(), "--markdown", out("x.html")},
+      {"bench", baked(), "--techniques", ""},
+      {"bench", baked(), "--techniques", "embree9", "--html", out("x.html")},
+      {"bench", baked(), "--size", "0x512", "--html", out("x.html")},
+      {"bench", baked(), "--size", "0x0"},
+      {"bench", baked(), "--frames", "-1"},
+      {"bench", baked(), "--from", out("x.json")},
+      {"bench", "--compare", out("x.json")},
+      {"bench", baked(), "--compare", out("x.json"), out("y.json")},
   };
   for (const auto& line : lines) expect_refused(line, 2);
   EXPECT_EQ(folder_.names(), std::vector<std::string>{});
@@ -137,7 +148,11 @@ TEST_F(CommandLine, FilesThatCannotBeReadOrWrittenAreStatus4) {
   expect_refused({"bake", source(), "-o", out("x.mdk"), "--report", out("no/x.json")}, 4);
   expect_refused({"bake", source(), "-o", out("x.mdk"), "--depfile", out("no/x.d")}, 4);
   expect_refused({"render", baked(), "-o", out("no/x#.png")}, 4);
-  expect_refused({"bench", baked(), "--json", out("no/x.json")}, 4);
+  expect_refused({"bench", baked(), out("missing.mdk"), "--html", out("x.html")}, 4);
+  for (const char* option : {"--json", "--csv", "--html", "--markdown"})
+    expect_refused({"bench", baked(), option, out("no/x.md")}, 4);
+  expect_refused({"bench", "--from", out("missing.json"), "--html", out("x.html")}, 4);
+  expect_refused({"bench", "--compare", out("missing.json"), out("missing.json")}, 4);
   EXPECT_EQ(folder_.names(), std::vector<std::string>{});
 }
 
@@ -157,6 +172,8 @@ TEST_F(CommandLine, ContentThatCannotBeUsedIsStatus3) {
     expect_refused({"verify", out(name)}, 3);
     expect_refused({"render", out(name), "-o", out("x#.png")}, 3);
     expect_refused({"bench", out(name)}, 3);
+    expect_refused({"bench", baked(), out(name), "--html", out("x.html")}, 3);
+    expect_refused({"bench", "--from", out(name), "--html", out("x.html")}, 3);
   }
   EXPECT_EQ(folder_.names(), before);
 }
@@ -164,6 +181,8 @@ TEST_F(CommandLine, ContentThatCannotBeUsedIsStatus3) {
 TEST_F(CommandLine, APictureTooLargeIsStatus5) {
   expect_refused({"render", baked(), "-o", out("x#.png"), "--size", "16385x1"}, 5);
   expect_refused({"bench", baked(), "--size", "1x1000000"}, 5);
+  expect_refused({"bench", baked(), "--size", "100000x100000", "--html", out("x.html")}, 5);
+  EXPECT_EQ(folder_.names(), std::vector<std::string>{});
 }
 
 TEST_F(CommandLine, AnUnreadableExtensionIsNamed) {

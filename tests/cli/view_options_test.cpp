@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "common/base/error.h"
 #include "common/trace/technique.h"
 
@@ -58,8 +60,17 @@ TEST(ViewOptions, AllTechniquesLeaveTheOracleOut) {
             (std::vector<std::string>{"refit-bvh", "brute-force"}));
 }
 
+TEST(ViewOptions, SomeTechniquesCanBeTakenOutAgain) {
+  const std::vector<std::string> ids = parse_techniques("all,-static-kdtree,-auto,brute-force");
+  EXPECT_EQ(ids.size() + 2, technique_table().size());
+  EXPECT_EQ(std::count(ids.begin(), ids.end(), "static-kdtree"), 0);
+  EXPECT_EQ(std::count(ids.begin(), ids.end(), "auto"), 0);
+  EXPECT_EQ(ids.back(), "brute-force");
+}
+
 TEST(ViewOptions, RefusesTechniquesThatAreNotThere) {
-  for (const char* wrong : {"", "bvh", "refit-bvh,", "refit-bvh,refit-bvh", "all,refit-bvh"})
+  for (const char* wrong : {"", "bvh", "refit-bvh,", "refit-bvh,refit-bvh", "all,refit-bvh",
+                            "all,-bvh", "refit-bvh,-refit-bvh", "refit-bvh,all"})
     EXPECT_THROW(parse_techniques(wrong), Error) << wrong;
 }
 

@@ -1,8 +1,11 @@
-#include "preprocess/cli/bench_run.h"
+#include "preprocess/cli/bench/measurement.h"
 
+#include <algorithm>
+#include <cmath>
 #include <memory>
 
 #include "common/trace/renderer.h"
+#include "preprocess/cli/key_range.h"
 #include "preprocess/cli/median.h"
 #include "preprocess/cli/progress_bar.h"
 
@@ -24,22 +27,39 @@ FrameRequest request_of(const BenchConfig& config, std::uint32_t key) {
   return request;
 }
 
+/// To 10 ns, below which a clock has nothing to say: files stay short and say what pages show.
+double rounded(double milliseconds) { return std::round(milliseconds * 1e5) / 1e5; }
+
+bool is_among(const std::vector<std::uint32_t>& rising, std::size_t value) {
+  return std::binary_search(rising.begin(), rising.end(), value);
+}
+
 void count_and_judge(const Model& model, const BenchConfig& config, Renderers& renderers,
                      std::vector<TechniqueBench>& results, ProgressSink& progress) {
   Renderer oracle(model, "brute-force");
+  const auto frames = static_cast<std::uint32_t>(config.keys.size());
+  const std::vector<std::uint32_t> judged = spread_keys(config.judged, frames);
   for (std::size_t k = 0; k < config.keys.size(); ++k) {
     const double share = 1.0 / static_cast<double>(config.keys.size());
     progress.report("count", static_cast<double>(k) * share);
     FrameRequest request = request_of(config, config.keys[k]);
-    oracle.trace(request);
+    const bool is_judged = is_among(judged, k);
+    if (is_judged) oracle.trace(request);
     request.counting = Counting::kOn;
     for (std::size_t i = 0; i < renderers.size(); ++i) {
       const FrameStats& stats = renderers[i]->trace(request);
-      results[i].counters += stats.counters;
-      results[i].rays += stats.rays;
-      results[i].prebuild_ms += stats.prebuild_ms;
-      results[i].hit_mismatches += count_mismatches(renderers[i]->hits(), oracle.hits(),
-                                                    find_technique(results[i].id).agreement());
+      TechniqueBench& result = results[i];
+      BenchFrame frame;
+      frame.key = config.keys[k];
+      frame.counters = stats.counters;
+      frame.structure_bytes = renderers[i]->structure_bytes();
+      result.frames.push_back(frame);
+      result.rays_per_frame = stats.rays;
+      result.prebuild_ms += stats.prebuild_ms;
+      if (!is_judged) continue;
+      ++result.judged_frames;
+      result.hit_mismatches += count_mismatches(renderers[i]->hits(), oracle.hits(),
+                                                find_technique(result.id).agreement());
     }
     progress.report("count", static_cast<double>(k + 1) * share);
   }
@@ -47,42 +67,26 @@ void count_and_judge(const Model& model, const BenchConfig& config, Renderers& r
 
 void time_round(const BenchConfig& config, Renderer& renderer, TechniqueBench& result) {
   renderer.render(request_of(config, config.keys.front()));  // untimed: warms the caches
-  for (std::size_t k = 0; k < config.keys.size(); ++k) {
-    const FrameStats& stats = renderer.render(request_of(config, config.keys[k]));
-    if (result.frames.size() == k) {
-      result.frames.push_back({config.keys[k], stats});
+  const bool first_round = result.round_medians_ms.empty();
+  std::vector<double> times;
+  for (BenchFrame& frame : result.frames) {
+    const FrameStats& stats = renderer.render(request_of(config, frame.key));
+    BenchFrame timed = frame;
+    timed.pose_ms = rounded(stats.pose_ms);
+    timed.update_ms = rounded(stats.update_ms);
+    timed.trace_ms = rounded(stats.trace_ms);
+    timed.shade_ms = rounded(stats.shade_ms);
+    times.push_back(timed.time_to_image_ms());
+    if (first_round) {
+      frame = timed;
     } else {
-      keep_faster(result.frames[k], stats);
+      keep_faster(frame, timed);
     }
   }
-}
-
-template <class Value>
-double median_over(const std::vector<BenchFrame>& frames, const Value& value) {
-  std::vector<double> values;
-  values.reserve(frames.size());
-  for (const BenchFrame& frame : frames) values.push_back(value(frame.stats));
-  return median(std::move(values));
+  result.round_medians_ms.push_back(rounded(median(std::move(times))));
 }
 
 }  // namespace
-
-FrameStats TechniqueBench::median_phases() const {
-  FrameStats phases;
-  phases.pose_ms = median_over(frames, [](const FrameStats& s) { return s.pose_ms; });
-  phases.update_ms = median_over(frames, [](const FrameStats& s) { return s.update_ms; });
-  phases.trace_ms = median_over(frames, [](const FrameStats& s) { return s.trace_ms; });
-  phases.shade_ms = median_over(frames, [](const FrameStats& s) { return s.shade_ms; });
-  return phases;
-}
-
-double TechniqueBench::median_time_to_image_ms() const {
-  return median_over(frames, [](const FrameStats& s) { return s.time_to_image_ms(); });
-}
-
-void keep_faster(BenchFrame& frame, const FrameStats& another) {
-  if (another.time_to_image_ms() < frame.stats.time_to_image_ms()) frame.stats = another;
-}
 
 std::vector<TechniqueBench> bench_techniques(const Model& model, const BenchConfig& config,
                                              ProgressSink& progress) {
@@ -105,6 +109,7 @@ std::vector<TechniqueBench> bench_techniques(const Model& model, const BenchConf
   }
   for (std::size_t i = 0; i < count; ++i) {
     results[i].structure_bytes = renderers[i]->structure_bytes();
+    results[i].prebuild_ms = rounded(results[i].prebuild_ms);
     results[i].note = renderers[i]->technique_note();
   }
   return results;
