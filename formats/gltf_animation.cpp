@@ -190,7 +190,7 @@ void hermite_between(const Track& track, std::size_t key, double s, std::span<do
 
 }  // namespace
 
-std::vector<AnimationClip> read_clips(const Document& document, const GltfOptions& options) {
+std::vector<AnimationClip> read_clips(const Document& document, const ReadOptions& options) {
   const std::vector<std::string> names = clip_names(document);
   check_names(document, options.clips, names);
   if (document.animations.empty()) return {AnimationClip{names[0], 0, {0.0}, {}}};

@@ -31,7 +31,7 @@ struct AnimationClip {
 /// The animations that `options` ask for, in the file's order; one clip "static" with one key where
 /// the file has none. Throws Error: kUsage for an unknown name, kBadInput, kOverLimit for more than
 /// 2^24 keys.
-std::vector<AnimationClip> read_clips(const Document& document, const GltfOptions& options);
+std::vector<AnimationClip> read_clips(const Document& document, const ReadOptions& options);
 
 /// The track's value at a file time, clamped to its first and last; rotations of length one.
 /// `value`: `components` numbers. Cost: O(log keys).

@@ -146,7 +146,7 @@ void sample_keys(const Document& document, const RigPlan& plan,
   }
 }
 
-void simplify(const Document& document, const RigPlan& plan, const GltfOptions& options,
+void simplify(const Document& document, const RigPlan& plan, const ReadOptions& options,
               PoseSequence& sequence) {
   const std::vector<std::uint32_t> kept =
       simplify_rig(*sequence.rig, sequence.key_count(),
@@ -180,7 +180,7 @@ void check_finite(const Document& document, const PoseSequence& sequence) {
                                            std::to_string(sequence.key_times[key]) + " s");
 }
 
-GltfResult read(const std::string& path, const GltfOptions& options, ProgressSink& progress) {
+ReadResult read(const std::string& path, const ReadOptions& options, ProgressSink& progress) {
   if (!(options.fps > 0 && options.fps <= 10000))
     throw Error(ErrorCode::kUsage, "--fps must be above 0 and at most 10000");
   progress.report("read", 0.0);
@@ -189,7 +189,7 @@ GltfResult read(const std::string& path, const GltfOptions& options, ProgressSin
   const std::vector<AnimationClip> clips = read_clips(document, options);
   const Scene scene = read_scene(document, notes);
 
-  GltfResult result;
+  ReadResult result;
   PoseSequence& sequence = result.sequence;
   const NodePose first_pose = pose_nodes(document, clips[0], 0.0);
   const std::vector<std::uint64_t> groups = assemble(document, scene, first_pose, notes, sequence);
@@ -213,7 +213,7 @@ GltfResult read(const std::string& path, const GltfOptions& options, ProgressSin
 
 }  // namespace
 
-GltfResult read_gltf(const std::string& path, const GltfOptions& options, ProgressSink& progress) {
+ReadResult read_gltf(const std::string& path, const ReadOptions& options, ProgressSink& progress) {
   try {
     return read(path, options, progress);
   } catch (const std::bad_alloc&) {

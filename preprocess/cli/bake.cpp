@@ -162,7 +162,7 @@ void run_bake(const BakeArguments& arguments) {
   ProgressPart reading(progress, 0, kReadUntil);
   SourceOptions reading_options = arguments.source;
   reading_options.skeleton = options.sampling == PoseSampling::kPoseSpace;
-  GltfResult source = read_source(arguments.inputs, reading_options, reading);
+  ReadResult source = read_source(arguments.inputs, reading_options, reading);
   outcome.seconds.read = stage.lap();
 
   ProgressPart decomposing(progress, kReadUntil, kDecomposeUntil);

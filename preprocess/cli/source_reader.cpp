@@ -24,8 +24,8 @@ void add_source_options(CLI::App& command, SourceOptions& options) {
       ->type_name("N");
 }
 
-GltfOptions parse_source_options(const SourceOptions& options) {
-  GltfOptions parsed;
+ReadOptions parse_source_options(const SourceOptions& options) {
+  ReadOptions parsed;
   parsed.skeleton = options.skeleton;
   parsed.fps = parse_real("--fps", options.fps);
   if (!(parsed.fps > 0 && parsed.fps <= 10000))
@@ -66,7 +66,7 @@ Appearance appearance_of(const ObjMesh& mesh) {
   return appearance;
 }
 
-GltfResult read_obj_source(std::span<const std::string> paths, const GltfOptions& options,
+ReadResult read_obj_source(std::span<const std::string> paths, const ReadOptions& options,
                            ProgressSink& progress) {
   const std::string name = std::filesystem::path(paths.back()).stem().string();
   for (const std::string& wanted : options.clips)
@@ -75,7 +75,7 @@ GltfResult read_obj_source(std::span<const std::string> paths, const GltfOptions
                   "--clips " + wanted + ": " + paths.back() + " has one clip, \"" + name + "\"");
   progress.report("read", 0);
   ObjMesh mesh = read_obj(paths.front());
-  GltfResult result;
+  ReadResult result;
   PoseSequence& sequence = result.sequence;
   sequence.appearance = appearance_of(mesh);
   sequence.vertex_count = static_cast<std::uint32_t>(mesh.vertices.size());
@@ -117,10 +117,10 @@ void require_known_source(std::span<const std::string> paths) {
                                        "point cache that moves it; leave it out");
 }
 
-GltfResult read_source(std::span<const std::string> paths, const SourceOptions& options,
+ReadResult read_source(std::span<const std::string> paths, const SourceOptions& options,
                        ProgressSink& progress) {
   require_known_source(paths);
-  const GltfOptions parsed = parse_source_options(options);
+  const ReadOptions parsed = parse_source_options(options);
   if (is_gltf(extension_of(paths.front()))) return read_gltf(paths.front(), parsed, progress);
   return read_obj_source(paths, parsed, progress);
 }

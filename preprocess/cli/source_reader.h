@@ -16,12 +16,12 @@ namespace mdk {
 struct SourceOptions {
   std::string clips = "all";
   std::string fps = "30";
-  bool skeleton = false;  ///< what GltfOptions::skeleton says; no option of the command line
+  bool skeleton = false;  ///< what ReadOptions::skeleton says; no option of the command line
 };
 void add_source_options(CLI::App& command, SourceOptions& options);
 
 /// Throws Error (kUsage) for a rate out of range or an empty clip name.
-GltfOptions parse_source_options(const SourceOptions& options);
+ReadOptions parse_source_options(const SourceOptions& options);
 
 /// One file (.gltf, .glb, .obj), or a mesh and the cache that moves it (.obj, then .pc2 or .mdd).
 /// Throws Error, naming what is read: kBadInput for one name that is not, kUsage for names that do
@@ -31,7 +31,7 @@ void require_known_source(std::span<const std::string> paths);
 /// An .obj is one clip, named like the cache without its extension; alone, one key. Throws what
 /// require_known_source and the format's reader throw, and Error (kUsage) where --clips names
 /// another clip.
-GltfResult read_source(std::span<const std::string> paths, const SourceOptions& options,
+ReadResult read_source(std::span<const std::string> paths, const SourceOptions& options,
                        ProgressSink& progress);
 
 }  // namespace mdk

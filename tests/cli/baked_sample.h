@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include "tests/cli/temp_folder.h"
+#include "tests/formats/temp_folder.h"
 
 namespace mdk::test {
 

@@ -11,7 +11,7 @@
 #include "formats/mdk_writer.h"
 #include "preprocess/cli/model_checks.h"
 #include "preprocess/pipeline.h"
-#include "tests/cli/temp_folder.h"
+#include "tests/formats/temp_folder.h"
 #include "tests/preprocess/moving_meshes.h"
 
 namespace mdk {

@@ -5,7 +5,7 @@
 #include <filesystem>
 
 #include "common/base/error.h"
-#include "tests/cli/temp_folder.h"
+#include "tests/formats/temp_folder.h"
 
 namespace mdk {
 namespace {

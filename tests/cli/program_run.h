@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "tests/cli/temp_folder.h"
+#include "tests/formats/temp_folder.h"
 
 namespace mdk::test {
 

@@ -8,7 +8,7 @@
 #include <numbers>
 #include <vector>
 
-#include "tests/cli/temp_folder.h"
+#include "tests/formats/temp_folder.h"
 
 namespace mdk::test {
 namespace {

@@ -3,7 +3,7 @@
 #include "formats/gltf_reader.h"
 #include "preprocess/pipeline.h"
 #include "tests/cli/sample_mesh.h"
-#include "tests/cli/temp_folder.h"
+#include "tests/formats/temp_folder.h"
 
 namespace mdk::test {
 

@@ -219,7 +219,7 @@ TEST(GltfAnimation, ClipNamesAreUniqueAndChooseClips) {
     const int a = m.b.animation(0, "translation", input, output);
     m.b.at("animations", a).insert(1, "\"name\": \"" + std::string(name) + "\", ");
   }
-  const auto names = [](const GltfResult& r) {
+  const auto names = [](const ReadResult& r) {
     std::vector<std::string> all;
     for (const Clip& clip : r.sequence.clips) all.push_back(clip.name);
     return all;

@@ -118,7 +118,7 @@ TEST(GltfAppearance, ReadsImagesFromBufferViewsAndFromFiles) {
   const std::string image =
       write_text(folder, "maps/base colour.png", std::string(png.begin(), png.end()));
   const std::string path = write_text(folder, "a.gltf", beside.b.json());
-  const GltfResult r = read_file(path);
+  const ReadResult r = read_file(path);
   EXPECT_EQ(r.sequence.appearance.texels[3], 0x281e140au);
   EXPECT_THAT(r.dependencies, ElementsAre(path, image));
 }
@@ -164,7 +164,7 @@ TEST(GltfAppearance, AnImageThatCannotBeReadIsANoteAndPlainColour) {
     Textured t;
     t.image(image);
     t.material("");
-    const GltfResult r = read_built(t.b);
+    const ReadResult r = read_built(t.b);
     EXPECT_THAT(r.notes, ElementsAre(HasSubstr(note)));
     EXPECT_EQ(r.sequence.appearance.materials[0].texture, kNoTexture);
     EXPECT_THAT(r.sequence.appearance.texels, IsEmpty());
@@ -175,7 +175,7 @@ TEST(GltfAppearance, ATextureWithoutItsCoordinatesIsANote) {
   Textured t;
   t.embed(kPng);
   t.material(", \"texCoord\": 2");
-  const GltfResult r = read_built(t.b);
+  const ReadResult r = read_built(t.b);
   EXPECT_THAT(r.notes, ElementsAre(HasSubstr("coordinates")));
   EXPECT_EQ(r.sequence.appearance.materials[0].texture, kNoTexture);
 }

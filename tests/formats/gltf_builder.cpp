@@ -79,18 +79,18 @@ std::string write_text(const TempFolder& folder, const std::string& name, const 
   return path;
 }
 
-GltfResult read_file(const std::string& path, double fps, const std::vector<std::string>& clips) {
+ReadResult read_file(const std::string& path, double fps, const std::vector<std::string>& clips) {
   SilentProgress silent;
   return read_gltf(path, {.fps = fps, .clips = clips}, silent);
 }
 
-GltfResult read_built(const GltfBuilder& builder, const GltfOptions& options) {
+ReadResult read_built(const GltfBuilder& builder, const ReadOptions& options) {
   const TempFolder folder;
   SilentProgress silent;
   return read_gltf(write_text(folder, "test.gltf", builder.json()), options, silent);
 }
 
-GltfResult read_built(const GltfBuilder& builder, double fps,
+ReadResult read_built(const GltfBuilder& builder, double fps,
                       const std::vector<std::string>& clips) {
   const TempFolder folder;
   return read_file(write_text(folder, "test.gltf", builder.json()), fps, clips);

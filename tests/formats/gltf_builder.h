@@ -85,12 +85,12 @@ class GltfBuilder {
 std::string write_text(const TempFolder& folder, const std::string& name, const std::string& text);
 
 /// Reads a file at `fps`, all clips or those named.
-GltfResult read_file(const std::string& path, double fps = 30,
+ReadResult read_file(const std::string& path, double fps = 30,
                      const std::vector<std::string>& clips = {});
 
 /// Writes what was built as "test.gltf" and reads it back.
-GltfResult read_built(const GltfBuilder& builder, const GltfOptions& options);
-GltfResult read_built(const GltfBuilder& builder, double fps = 30,
+ReadResult read_built(const GltfBuilder& builder, const ReadOptions& options);
+ReadResult read_built(const GltfBuilder& builder, double fps = 30,
                       const std::vector<std::string>& clips = {});
 
 }  // namespace mdk::test

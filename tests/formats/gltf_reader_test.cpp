@@ -28,7 +28,7 @@ std::string five_points(GltfBuilder& b) {
 TEST(GltfReader, AFileWithoutAnimationIsOneClipOfOneKey) {
   GltfBuilder b;
   b.add("nodes", "{\"mesh\": " + std::to_string(b.triangle_mesh()) + "}");
-  const GltfResult r = read_built(b);
+  const ReadResult r = read_built(b);
   EXPECT_THAT(r.sequence.clips, ElementsAre(Clip{"static", 0, 1}));
   EXPECT_THAT(r.sequence.key_times, ElementsAre(0.0));
   EXPECT_THAT(r.sequence.triangles, ElementsAre(tri(0, 1, 2)));
@@ -41,7 +41,7 @@ TEST(GltfReader, ReadsBinaryFilesLikeTextFiles) {
   b.add("nodes", "{\"mesh\": " + std::to_string(b.triangle_mesh()) + ", \"scale\": [2, 3, 4]}");
   const TempFolder folder;
   const std::string path = write_text(folder, "a.glb", b.glb());
-  const GltfResult r = read_file(path);
+  const ReadResult r = read_file(path);
   expect_pose(r.sequence, 0, {{0, 0, 0}, {2, 0, 0}, {0, 3, 0}});
   EXPECT_THAT(r.dependencies, ElementsAre(path));
 }
@@ -86,7 +86,7 @@ TEST(GltfReader, LeavesOutPointsAndLinesWithANote) {
                       "}}, {\"mode\": 0, \"attributes\": {" + attributes +
                       "}}, {\"mode\": 5, \"attributes\": {" + attributes + "}}]}");
   b.add("nodes", "{\"mesh\": 0}");
-  const GltfResult r = read_built(b);
+  const ReadResult r = read_built(b);
   EXPECT_EQ(r.sequence.triangles.size(), 3u);
   EXPECT_THAT(r.notes, ElementsAre("points and lines are left out"));
 }

@@ -197,7 +197,7 @@ TEST(GltfSkin, KeepsTheSkeletonThatItsBonesHangOnWhereItIsAskedFor) {
                           b.accessor<float>("VEC4", {1, 0, 0, 0, 1, 0, 0, 0, 0.5f, 0.5f, 0, 0}));
   b.mesh("\"POSITION\": " + std::to_string(positions) + sets);
   b.add("skins", R"({"joints": [1, 2]})");
-  GltfOptions options;
+  ReadOptions options;
   EXPECT_FALSE(read_built(b, options).sequence.skeleton.has_value());
   options.skeleton = true;
   const PoseSequence sequence = read_built(b, options).sequence;

@@ -29,17 +29,33 @@ std::vector<std::string> TempFolder::names() const {
   return names;
 }
 
-Bytes read_bytes(const std::string& path) {
+namespace {
+
+template <class Whole>
+Whole read_whole(const std::string& path) {
   std::ifstream in(path, std::ios::binary);
   if (!in) throw std::runtime_error("cannot read " + path);
   return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
 }
 
-void write_bytes(const std::string& path, const Bytes& bytes) {
+void write_whole(const std::string& path, const char* data, std::size_t size) {
   std::ofstream out(path, std::ios::binary | std::ios::trunc);
-  out.write(reinterpret_cast<const char*>(bytes.data()),
-            static_cast<std::streamsize>(bytes.size()));
+  out.write(data, static_cast<std::streamsize>(size));
   if (!out.flush()) throw std::runtime_error("cannot write " + path);
+}
+
+}  // namespace
+
+Bytes read_bytes(const std::string& path) { return read_whole<Bytes>(path); }
+
+void write_bytes(const std::string& path, const Bytes& bytes) {
+  write_whole(path, reinterpret_cast<const char*>(bytes.data()), bytes.size());
+}
+
+std::string read_text(const std::string& path) { return read_whole<std::string>(path); }
+
+void write_text(const std::string& path, const std::string& text) {
+  write_whole(path, text.data(), text.size());
 }
 
 }  // namespace mdk::test

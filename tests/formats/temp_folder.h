@@ -19,7 +19,7 @@ class TempFolder {
 
   std::string path() const { return path_.string(); }
   std::string file(const std::string& name) const { return (path_ / name).string(); }
-  /// Names of all files in it, sorted.
+  /// Names of everything in it, sorted.
   std::vector<std::string> names() const;
 
  private:
@@ -28,5 +28,7 @@ class TempFolder {
 
 Bytes read_bytes(const std::string& path);
 void write_bytes(const std::string& path, const Bytes& bytes);
+std::string read_text(const std::string& path);
+void write_text(const std::string& path, const std::string& text);
 
 }  // namespace mdk::test

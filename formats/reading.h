@@ -1,0 +1,23 @@
+// What every reader of animated meshes takes and gives.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "common/motion/pose_sequence.h"
+
+namespace mdk {
+
+struct ReadOptions {
+  double fps = 30;                 ///< keys or frames per second, in (0, 10000]
+  std::vector<std::string> clips;  ///< names of the animations to read; empty: all
+  bool skeleton = false;           ///< keep what the rig's bones hang on; then no bones are joined
+};
+
+struct ReadResult {
+  PoseSequence sequence;
+  std::vector<std::string> dependencies;  ///< every file read: the inputs, buffers, images
+  std::vector<std::string> notes;         ///< one sentence per thing left out ("morph normals…")
+};
+
+}  // namespace mdk
