@@ -1,22 +1,18 @@
-// One pass over the lines. Numbers are read by from_chars, which rounds correctly, and so alike, on
-// every machine.
+// One pass over the lines.
 #include "formats/obj_reader.h"
 
-#include <charconv>
 #include <cmath>
 #include <cstddef>
 #include <optional>
 #include <string_view>
-#include <system_error>
 
 #include "common/base/error.h"
 #include "formats/mapped_file.h"
+#include "formats/text_scan.h"
 
 namespace mdk {
 namespace {
 
-constexpr std::size_t kMaxVertices = std::size_t{1} << 27;
-constexpr std::size_t kMaxTriangles = (std::size_t{1} << 29) / 3;
 constexpr std::uint32_t kWhite = 0xffffffffu;
 
 bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r'; }
@@ -74,33 +70,11 @@ class Statements {
   std::size_t line_ = 0, next_line_ = 1;
 };
 
-template <class Number>
-std::optional<Number> parsed(std::string_view word) {
-  if (!word.empty() && word.front() == '+') word.remove_prefix(1);
-  Number value{};
-  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-  if (error != std::errc() || end != word.data() + word.size()) return std::nullopt;
-  return value;
-}
-
-/// Not more of a word than a message can hold.
-std::string quoted(std::string_view word) {
-  std::string text(1, '"');
-  text.append(word.substr(0, 40));
-  return text.append(1, '"');
-}
-
-std::uint32_t linear_byte(float srgb) {
-  const double s = std::min(std::max(static_cast<double>(srgb), 0.0), 1.0);
-  const double linear = s <= 0.04045 ? s / 12.92 : std::pow((s + 0.055) / 1.055, 2.4);
-  return static_cast<std::uint32_t>(std::lround(linear * 255));
-}
-
 class ObjParser {
  public:
   explicit ObjParser(const std::string& path) : path_(path) {}
 
-  ObjMesh parse(std::string_view text) {
+  TriangleMesh parse(std::string_view text) {
     Statements statements(text);
     for (std::string_view statement; statements.next(statement);) {
       line_ = statements.line();
@@ -133,13 +107,12 @@ class ObjParser {
       numbers[count++] = *number;
     }
     if (count < 3) fail(line_, "a vertex needs three coordinates");
-    if (mesh_.vertices.size() == kMaxVertices)
+    if (mesh_.vertices.size() == kMaxMeshVertices)
       throw Error(ErrorCode::kOverLimit, path_ + ": has over 134 million vertices");
     mesh_.vertices.push_back({numbers[0], numbers[1], numbers[2]});
     if (count == 6) {
       mesh_.vertex_colors.resize(mesh_.vertices.size() - 1, kWhite);
-      mesh_.vertex_colors.push_back(linear_byte(numbers[3]) | linear_byte(numbers[4]) << 8 |
-                                    linear_byte(numbers[5]) << 16 | 0xff000000u);
+      mesh_.vertex_colors.push_back(linear_color({numbers[3], numbers[4], numbers[5]}));
     }
   }
 
@@ -150,7 +123,7 @@ class ObjParser {
       const std::uint32_t corner = vertex_of(word);
       if (corners == 0) first = corner;
       if (corners >= 2) {
-        if (mesh_.triangles.size() == kMaxTriangles)
+        if (mesh_.triangles.size() == kMaxMeshTriangles)
           throw Error(ErrorCode::kOverLimit, path_ + ": has over 178 million triangles");
         mesh_.triangles.push_back({{first, last, corner}});
       }
@@ -167,7 +140,8 @@ class ObjParser {
     const std::optional<std::int64_t> number = parsed<std::int64_t>(digits);
     if (!number || *number == 0) fail(line_, quoted(word) + " is not the number of a vertex");
     const auto count = static_cast<std::int64_t>(mesh_.vertices.size());
-    if (*number < -count || *number > static_cast<std::int64_t>(kMaxVertices)) no_such(line_, word);
+    if (*number < -count || *number > static_cast<std::int64_t>(kMaxMeshVertices))
+      no_such(line_, word);
     const auto vertex = static_cast<std::uint32_t>(*number < 0 ? count + *number : *number - 1);
     if (largest_line_ == 0 || vertex > largest_) {
       largest_ = vertex;
@@ -193,15 +167,19 @@ class ObjParser {
   std::uint32_t largest_ = 0;     ///< of all vertices that faces use
   std::size_t largest_line_ = 0;  ///< where; 0 before the first face
   bool has_materials_ = false;
-  ObjMesh mesh_;
+  TriangleMesh mesh_;
 };
 
 }  // namespace
 
-ObjMesh read_obj(const std::string& path) {
+TriangleMesh read_obj(const std::string& path) {
   const MappedFile file(path);
   const std::span<const std::byte> bytes = file.bytes();
-  return ObjParser(path).parse({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+  return parse_obj(path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+}
+
+TriangleMesh parse_obj(const std::string& path, std::string_view text) {
+  return ObjParser(path).parse(text);
 }
 
 }  // namespace mdk

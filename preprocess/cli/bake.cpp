@@ -140,9 +140,12 @@ void print_steps(const std::vector<ClusteringStep>& steps) {
               << fixed_text(step.sah_cost, 2) << "\n";
 }
 
-void check_places(const BakeArguments& arguments) {
+void keep_inputs(const BakeArguments& arguments, const std::vector<std::string>& inputs) {
   const std::string outputs[] = {arguments.output, arguments.report, arguments.depfile};
-  for (const std::string& input : arguments.inputs) require_distinct_files(input, outputs);
+  for (const std::string& input : inputs) require_distinct_files(input, outputs);
+}
+
+void check_places(const BakeArguments& arguments) {
   require_writable_place(arguments.output);
   if (!arguments.report.empty()) require_writable_place(arguments.report);
   if (!arguments.depfile.empty()) require_writable_place(arguments.depfile);
@@ -153,7 +156,8 @@ void run_bake(const BakeArguments& arguments) {
   const DecomposeOptions options = parse_decompose_options(arguments);
   parse_source_options(arguments.source);
   ProgressBar progress(std::cerr, progress_style(arguments.messages));
-  require_known_source(arguments.inputs);
+  const Source source_files = find_source(arguments.inputs);
+  keep_inputs(arguments, source_files.files.files);
   check_places(arguments);
   defer_interrupts();
 
@@ -162,7 +166,8 @@ void run_bake(const BakeArguments& arguments) {
   ProgressPart reading(progress, 0, kReadUntil);
   SourceOptions reading_options = arguments.source;
   reading_options.skeleton = options.sampling == PoseSampling::kPoseSpace;
-  ReadResult source = read_source(arguments.inputs, reading_options, reading);
+  ReadResult source = read_source(source_files, reading_options, reading);
+  keep_inputs(arguments, source.dependencies);
   outcome.seconds.read = stage.lap();
 
   ProgressPart decomposing(progress, kReadUntil, kDecomposeUntil);
@@ -244,9 +249,11 @@ void add_decompose_options(CLI::App& command, BakeArguments& arguments) {
 CommandBody add_bake_command(CLI::App& command) {
   const auto arguments = std::make_shared<BakeArguments>();
   command
-      .add_option("INPUT", arguments->inputs,
-                  "An animated mesh: .gltf or .glb (skins, morph targets, node animation), or an\n"
-                  ".obj and the point cache that moves it (.pc2 or .mdd).")
+      .add_option(
+          "INPUT", arguments->inputs,
+          "An animated mesh: .gltf or .glb (skins, morph targets, node animation); an .obj\n"
+          "or .ply for each key (a folder, 'walk_####.obj', or all the files); or an .obj\n"
+          "or .ply and the point cache that moves it (.pc2 or .mdd).")
       ->required()
       ->type_name("");
   command
@@ -271,7 +278,8 @@ CommandBody add_bake_command(CLI::App& command) {
       "Example:\n"
       "  mdprep bake hand.glb -o hand.mdk --report hand.json\n"
       "  mdprep bake fox.glb -o fox.mdk --clips Walk,Run --fps 24 --stop 5\n"
-      "  mdprep bake cow.obj cow.pc2 -o cow.mdk --fps 24");
+      "  mdprep bake cow.obj cow.pc2 -o cow.mdk --fps 24\n"
+      "  mdprep bake 'walk_####.obj' -o walk.mdk --fps 24");
   return [arguments] { run_bake(*arguments); };
 }
 

@@ -2,12 +2,14 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <array>
 #include <filesystem>
-#include <utility>
+#include <string_view>
+#include <system_error>
 
 #include "common/base/error.h"
-#include "formats/obj_reader.h"
-#include "formats/point_cache_reader.h"
+#include "formats/gltf_reader.h"
+#include "formats/mesh_sequence_reader.h"
 #include "preprocess/cli/number_text.h"
 
 namespace mdk {
@@ -18,9 +20,10 @@ void add_source_options(CLI::App& command, SourceOptions& options) {
                   "Which animations: all, or names separated by commas (default: all).")
       ->type_name("all|NAME,...");
   command
-      .add_option("--fps", options.fps,
-                  "Keys per second at which skins, morphs and node tracks are sampled, or frames\n"
-                  "per second of a .pc2; above 0, at most 10000 (default: 30).")
+      .add_option(
+          "--fps", options.fps,
+          "Keys per second at which skins, morphs and node tracks are sampled, or frames\n"
+          "per second of a .pc2 or of numbered files; above 0, at most 10000 (default: 30).")
       ->type_name("N");
 }
 
@@ -43,6 +46,8 @@ ReadOptions parse_source_options(const SourceOptions& options) {
 
 namespace {
 
+constexpr std::array<std::string_view, 2> kMeshExtensions = {".obj", ".ply"};
+
 std::string extension_of(const std::string& path) {
   std::string extension = std::filesystem::path(path).extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(), [](char c) {
@@ -51,78 +56,67 @@ std::string extension_of(const std::string& path) {
   return extension;
 }
 
-bool is_gltf(const std::string& extension) { return extension == ".gltf" || extension == ".glb"; }
-bool is_cache(const std::string& extension) { return extension == ".pc2" || extension == ".mdd"; }
-
-Appearance appearance_of(const ObjMesh& mesh) {
-  Appearance appearance;
-  appearance.materials.emplace_back();
-  appearance.triangle_materials.assign(mesh.triangles.size(), 0);
-  if (mesh.vertex_colors.empty()) return appearance;
-  for (float& channel : appearance.materials.front().base_color) channel = 1;
-  for (const Triangle& triangle : mesh.triangles)
-    for (const std::uint32_t v : triangle.v)
-      appearance.corner_colors.push_back(mesh.vertex_colors[v]);
-  return appearance;
+bool is_gltf(const std::string& path) {
+  const std::string extension = extension_of(path);
+  return extension == ".gltf" || extension == ".glb";
+}
+bool is_cache(const std::string& path) {
+  const std::string extension = extension_of(path);
+  return extension == ".pc2" || extension == ".mdd";
+}
+bool is_mesh(const std::string& path) {
+  return std::ranges::find(kMeshExtensions, extension_of(path)) != kMeshExtensions.end();
 }
 
-ReadResult read_obj_source(std::span<const std::string> paths, const ReadOptions& options,
-                           ProgressSink& progress) {
-  const std::string name = std::filesystem::path(paths.back()).stem().string();
-  for (const std::string& wanted : options.clips)
-    if (wanted != name)
-      throw Error(ErrorCode::kUsage,
-                  "--clips " + wanted + ": " + paths.back() + " has one clip, \"" + name + "\"");
-  progress.report("read", 0);
-  ObjMesh mesh = read_obj(paths.front());
-  ReadResult result;
-  PoseSequence& sequence = result.sequence;
-  sequence.appearance = appearance_of(mesh);
-  sequence.vertex_count = static_cast<std::uint32_t>(mesh.vertices.size());
-  if (paths.size() == 1) {
-    sequence.key_times = {0};
-    sequence.positions = std::move(mesh.vertices);
-  } else {
-    PointCache cache =
-        read_point_cache(paths.back(), {options.fps, sequence.vertex_count}, progress);
-    sequence.key_times = std::move(cache.key_times);
-    sequence.positions = std::move(cache.positions);
-  }
-  sequence.clips = {{name, 0, sequence.key_count()}};
-  sequence.triangles = std::move(mesh.triangles);
-  weld_vertices(sequence, {});
-  check_consistency(sequence);
-  result.dependencies.assign(paths.begin(), paths.end());
-  result.notes = std::move(mesh.notes);
-  return result;
+[[noreturn]] void refuse(const std::string& path) {
+  if (is_cache(path))
+    throw Error(ErrorCode::kUsage,
+                path + ": is a point cache; name the mesh it moves, an .obj or .ply, before it");
+  const std::string extension = extension_of(path);
+  throw bad_input(
+      path, (extension.empty() ? "a name without an extension" : "files that end in " + extension) +
+                " cannot be read, only .gltf, .glb, .obj and .ply; export the mesh as glTF");
+}
+
+Source find_one(const std::string& path) {
+  std::error_code ignored;
+  if (std::filesystem::is_directory(path, ignored))
+    return {SourceKind::kMeshes, numbered_files_in(path, kMeshExtensions), {}};
+  if (is_gltf(path)) return {SourceKind::kGltf, {"", {path}, {0}}, {}};
+  if (!is_mesh(path)) refuse(path);
+  if (is_number_pattern(path)) return {SourceKind::kMeshes, files_of_pattern(path), {}};
+  Source source{SourceKind::kMeshes, files_from(path), {}};
+  if (const std::size_t count = source.files.files.size(); count > 1)
+    source.notes.push_back(path + " is read as the first of a sequence, up to " +
+                           source.files.files.back());
+  return source;
 }
 
 }  // namespace
 
-void require_known_source(std::span<const std::string> paths) {
-  const std::string& path = paths.front();
-  const std::string extension = extension_of(path);
-  if (is_cache(extension))
-    throw Error(ErrorCode::kUsage,
-                path + ": is a point cache; name the mesh it moves, an .obj, before it");
-  if (!is_gltf(extension) && extension != ".obj")
-    throw bad_input(
-        path,
-        (extension.empty() ? "a name without an extension" : "files that end in " + extension) +
-            " cannot be read, only .gltf, .glb and .obj; export the mesh as glTF");
-  if (paths.size() == 1) return;
-  if (paths.size() > 2 || extension != ".obj" || !is_cache(extension_of(paths[1])))
-    throw Error(ErrorCode::kUsage, paths[1] +
-                                       ": only an .obj takes a second input, the .pc2 or .mdd "
-                                       "point cache that moves it; leave it out");
+Source find_source(std::span<const std::string> inputs) {
+  if (inputs.size() == 1) return find_one(inputs.front());
+  if (inputs.size() == 2 && is_mesh(inputs[0]) && is_cache(inputs[1]))
+    return {SourceKind::kMeshAndCache, {"", {inputs[0], inputs[1]}, {0, 1}}, {}};
+  if (!is_gltf(inputs.front()) && !is_mesh(inputs.front())) refuse(inputs.front());
+  for (const std::string& path : inputs)
+    if (extension_of(path) != extension_of(inputs.front()) || is_gltf(path))
+      throw Error(ErrorCode::kUsage,
+                  inputs[1] +
+                      ": several inputs are an .obj or .ply and the .pc2 or .mdd point "
+                      "cache that moves it, or files of a sequence, all .obj or all .ply");
+  return {SourceKind::kMeshes, listed_files(inputs), {}};
 }
 
-ReadResult read_source(std::span<const std::string> paths, const SourceOptions& options,
-                       ProgressSink& progress) {
-  require_known_source(paths);
+ReadResult read_source(const Source& source, const SourceOptions& options, ProgressSink& progress) {
   const ReadOptions parsed = parse_source_options(options);
-  if (is_gltf(extension_of(paths.front()))) return read_gltf(paths.front(), parsed, progress);
-  return read_obj_source(paths, parsed, progress);
+  const std::vector<std::string>& files = source.files.files;
+  if (source.kind == SourceKind::kGltf) return read_gltf(files.front(), parsed, progress);
+  if (source.kind == SourceKind::kMeshAndCache)
+    return read_cached_mesh(files[0], files[1], parsed, progress);
+  ReadResult result = read_mesh_sequence(source.files, parsed, progress);
+  result.notes.insert(result.notes.begin(), source.notes.begin(), source.notes.end());
+  return result;
 }
 
 }  // namespace mdk

@@ -3,9 +3,11 @@
 
 #include <span>
 #include <string>
+#include <vector>
 
 #include "common/base/progress.h"
-#include "formats/gltf_reader.h"
+#include "formats/numbered_files.h"
+#include "formats/reading.h"
 
 namespace CLI {
 class App;
@@ -23,15 +25,22 @@ void add_source_options(CLI::App& command, SourceOptions& options);
 /// Throws Error (kUsage) for a rate out of range or an empty clip name.
 ReadOptions parse_source_options(const SourceOptions& options);
 
-/// One file (.gltf, .glb, .obj), or a mesh and the cache that moves it (.obj, then .pc2 or .mdd).
-/// Throws Error, naming what is read: kBadInput for one name that is not, kUsage for names that do
-/// not go together. Nothing is opened.
-void require_known_source(std::span<const std::string> paths);
+enum class SourceKind { kGltf, kMeshAndCache, kMeshes };
 
-/// An .obj is one clip, named like the cache without its extension; alone, one key. Throws what
-/// require_known_source and the format's reader throw, and Error (kUsage) where --clips names
-/// another clip.
-ReadResult read_source(std::span<const std::string> paths, const SourceOptions& options,
-                       ProgressSink& progress);
+/// What the names on the command line stand for.
+struct Source {
+  SourceKind kind = SourceKind::kGltf;
+  NumberedFiles files;             ///< all that were named or found
+  std::vector<std::string> notes;  ///< what was found beside what was named
+};
+
+/// A file (.gltf, .glb); a mesh (.obj, .ply) and the cache that moves it (.pc2, .mdd); or meshes: a
+/// folder, 'walk_####.obj', several files, or one file, which those numbered after it follow.
+/// Looks into folders and opens no file. Throws Error, naming what is read: kBadInput for a name
+/// that is not, kUsage for names that do not go together, and what numbered_files.h throws.
+Source find_source(std::span<const std::string> inputs);
+
+/// Throws what the format's reader throws.
+ReadResult read_source(const Source& source, const SourceOptions& options, ProgressSink& progress);
 
 }  // namespace mdk

@@ -95,8 +95,8 @@ VerifyReport verify_file(const MdkFile& file, const VerifyArguments& arguments,
 
   if (!arguments.source_paths.empty()) {
     ProgressPart reading(progress, 0.95, 1);
-    report.add(check_source(
-        model, read_source(arguments.source_paths, arguments.source, reading).sequence));
+    const Source source = find_source(arguments.source_paths);
+    report.add(check_source(model, read_source(source, arguments.source, reading).sequence));
   }
   return report;
 }
@@ -138,7 +138,7 @@ void run_verify(const VerifyArguments& arguments) {
   parse_source_options(arguments.source);
   parse_count("--seed", arguments.seed, {0, 0xffffffffu});
   if (arguments.samples != "auto") parse_count("--samples", arguments.samples, kSampleRange);
-  if (!arguments.source_paths.empty()) require_known_source(arguments.source_paths);
+  if (!arguments.source_paths.empty()) find_source(arguments.source_paths);
   defer_interrupts();
 
   const MdkFile file(arguments.input);
@@ -167,7 +167,8 @@ CommandBody add_verify_command(CLI::App& command) {
           .add_option("--source", arguments->source_paths,
                       "Read the source again and compare clips, triangles and the position of\n"
                       "every corner at every key. Give the bake's --clips and --fps, too. For an\n"
-                      ".obj and its point cache: --source twice.")
+                      ".obj and its point cache: --source twice; for several files of a sequence,\n"
+                      "better name the folder or 'walk_####.obj'.")
           ->allow_extra_args(false)
           ->type_name("INPUT");
   add_source_options(command, arguments->source);

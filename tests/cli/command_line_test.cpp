@@ -70,7 +70,7 @@ TEST_F(CommandLine, WrongUseIsStatus2AndOneSentence) {
       {"bake", source(), "-o", out("x.mdk"), "--nonsense"},
       {"bake", source(), "another.glb", "-o", out("x.mdk")},
       {"bake", source(), "cow.pc2", "-o", out("x.mdk")},
-      {"bake", "cow.obj", "another.obj", "-o", out("x.mdk")},
+      {"bake", "cow.obj", "another.ply", "-o", out("x.mdk")},
       {"bake", "cow.obj", "cow.pc2", "cow.mdd", "-o", out("x.mdk")},
       {"bake", "cow.pc2", "-o", out("x.mdk")},
       {"bake", source(), "-o", source()},

@@ -1,10 +1,8 @@
-// Animations made by others, where they are at hand: MDK_TEST_DATA names their folder.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <string>
@@ -13,24 +11,14 @@
 #include "common/base/error.h"
 #include "formats/gltf_reader.h"
 #include "tests/formats/gltf_builder.h"
+#include "tests/formats/sample_data.h"
 
 namespace mdk::test {
 namespace {
 
 namespace fs = std::filesystem;
 
-class GltfData : public testing::Test {
- protected:
-  void SetUp() override {
-    const char* folder = std::getenv("MDK_TEST_DATA");
-    folder_ = folder ? fs::path(folder) : fs::path(MDK_SOURCE_DIR) / "../shared/data";
-    if (!fs::is_directory(folder_)) GTEST_SKIP() << "no sample data; set MDK_TEST_DATA";
-  }
-
-  std::string need(const std::string& name) const { return (folder_ / name).string(); }
-
-  fs::path folder_;
-};
+class GltfData : public SampleData {};
 
 TEST_F(GltfData, EveryFileIsReadOrRefusedForAFeatureThatIsNamed) {
   std::vector<fs::path> files;

@@ -14,7 +14,7 @@ using testing::IsEmpty;
 
 class ObjReader : public testing::Test {
  protected:
-  ObjMesh read(const std::string& text) {
+  TriangleMesh read(const std::string& text) {
     const std::string path = folder_.file("mesh.obj");
     write_bytes(path, Bytes(text.begin(), text.end()));
     return read_obj(path);
@@ -29,7 +29,7 @@ class ObjReader : public testing::Test {
 const std::string kSquare = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
 
 TEST_F(ObjReader, VerticesAndTrianglesAreThoseOfTheFile) {
-  const ObjMesh mesh =
+  const TriangleMesh mesh =
       read("# a triangle\no t\nv 0 0.1 -2e-3\nv +1 0 0 1.0\n\tv 0 1 .5\nf 1 2 3\n");
   EXPECT_THAT(mesh.vertices,
               ElementsAre(Vec3f{0, 0.1f, -2e-3f}, Vec3f{1, 0, 0}, Vec3f{0, 1, 0.5f}));
@@ -54,7 +54,7 @@ TEST_F(ObjReader, CornersMayNameTexcoordsAndNormalsAndCountBackwards) {
 }
 
 TEST_F(ObjReader, ColoursAfterTheCoordinatesAreSrgb) {
-  const ObjMesh mesh = read("v 0 0 0\nv 1 0 0 1 0.5 0\nv 1 1 0 2 -1 0.02\nf 1 2 3\n");
+  const TriangleMesh mesh = read("v 0 0 0\nv 1 0 0 1 0.5 0\nv 1 1 0 2 -1 0.02\nf 1 2 3\n");
   // 0.5 in sRGB is 0.214 of the light, 0.02 lies on the straight part of the curve.
   EXPECT_THAT(mesh.vertex_colors,
               ElementsAre(0xffffffffu, 0xff00'0000u | 55u << 8 | 255u, 0xff00'00ffu));
