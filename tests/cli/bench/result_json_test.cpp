@@ -7,8 +7,8 @@
 
 #include "preprocess/cli/bench/result_tables.h"
 #include "tests/cli/bench/made_up_results.h"
-#include "tests/cli/temp_folder.h"
 #include "tests/formats/expect_error.h"
+#include "tests/formats/temp_folder.h"
 
 namespace mdk::test {
 namespace {
