@@ -95,7 +95,10 @@ std::vector<std::uint64_t> assemble(Document& document, const Scene& scene, cons
                                     Notes& notes, PoseSequence& sequence) {
   AppearanceBuilder appearance(document, notes);
   std::vector<std::uint64_t> groups;
-  for (const Instance& instance : scene.instances) {
+  std::uint32_t mesh = 0;  // primitives of one node follow each other and are one mesh
+  for (std::size_t i = 0; i < scene.instances.size(); ++i) {
+    const Instance& instance = scene.instances[i];
+    if (i > 0 && instance.node != scene.instances[i - 1].node) ++mesh;
     const PrimitiveGeometry& geometry = *instance.geometry;
     std::vector<Triangle> triangles = geometry.triangles;
     if (is_mirrored(instance, pose, joints_of(scene, instance, pose)))
@@ -104,6 +107,7 @@ std::vector<std::uint64_t> assemble(Document& document, const Scene& scene, cons
     for (const Triangle& t : triangles)
       sequence.triangles.push_back({{t.v[0] + sequence.vertex_count, t.v[1] + sequence.vertex_count,
                                      t.v[2] + sequence.vertex_count}});
+    sequence.triangle_meshes.resize(sequence.triangles.size(), mesh);
     groups.insert(groups.end(), geometry.smoothing_groups.begin(), geometry.smoothing_groups.end());
     sequence.vertex_count += static_cast<std::uint32_t>(geometry.positions.size());
   }

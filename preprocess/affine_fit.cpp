@@ -10,6 +10,8 @@ namespace {
 
 using Matrix = Eigen::Matrix3d;
 
+constexpr double kStrongestRidge = 1e3;  // of the trace: all but the similarity itself
+
 Matrix to_eigen(const double (&m)[3][3]) {
   Matrix r;
   for (int i = 0; i < 3; ++i)
@@ -39,6 +41,13 @@ double residual_of(const Matrix& map, const Matrix& cross, const Matrix& source,
   const double residual = target_trace - 2 * (map * cross.transpose()).trace() +
                           (map * source * map.transpose()).trace();
   return std::max(residual, 0.0);
+}
+
+/// Whether a map turns inside out, or nearly so.
+bool mirrors(const Matrix& map) {
+  constexpr double kThinnest = 1e-3;  // of the volume of a similarity of the same norm
+  const double norm = map.norm();
+  return !(map.determinant() > kThinnest * norm * norm * norm);
 }
 
 /// Puts the singular values into a range with bounded condition; leaves a good map untouched.
@@ -115,7 +124,16 @@ AffineFit fit_affine(const FitMoments& moments, const FitOptions& options) {
   const double least = 1e-10 * source.trace() + moments.weight * options.noise * options.noise;
   Matrix map = solve(least);
   const double left = residual_of(map, cross, source, moments.target_trace);
-  if (left > 0 && options.ridge > 0) map = solve(least + options.ridge * left);
+  double ridge = least + options.ridge * left;
+  if (left > 0 && options.ridge > 0) map = solve(ridge);
+  if (options.keep_orientation) {
+    // The similarity is proper: a pull towards it that is strong enough ends every mirroring.
+    const double strongest = kStrongestRidge * source.trace();
+    for (ridge = std::max(ridge, 1e-6 * source.trace()); mirrors(map) && ridge < strongest;) {
+      ridge *= 10;
+      map = solve(ridge);
+    }
+  }
   map = bounded(map, options);
 
   AffineFit fit;

@@ -37,6 +37,9 @@ struct FitOptions {
   double ridge = 0.05;         ///< pull towards a similarity, in units of the fit's own residual
   double max_condition = 1e3;  ///< largest ratio of singular values of the map
   double max_scale = 1e4;      ///< singular values lie in [1 / max_scale, max_scale]
+  /// No mirroring: a nearly flat cluster, whose thin side is noise, would else be turned inside out
+  /// at some keys, and collapse on the way there. Least squares alone does not ask for it.
+  bool keep_orientation = false;
 };
 
 struct AffineFit {

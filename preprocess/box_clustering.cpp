@@ -13,6 +13,7 @@ namespace {
 constexpr std::size_t kVertexBlock = 256;
 constexpr std::size_t kTrianglesPerChunk = 2048;
 constexpr std::uint32_t kRowsForGrowth = 8;
+constexpr int kFits = 2;  // to the rest pose, then to the middles of the boxes
 /// A triangle moves only for more than this share of its area: less is float noise.
 constexpr float kLeastShare = 1e-3f;
 
@@ -60,7 +61,16 @@ struct VertexBoxes {
     std::vector<Affine3f> narrow;
     for (const Affine3d& m : maps) narrow.push_back(to_float(m));
     parallel_chunks(table.vertex_count, kVertexBlock, [&](std::size_t begin, std::size_t end) {
-      for (int axis = 0; axis < 3; ++axis) fill_block(table, narrow, axis, {begin, end});
+      for (int axis = 0; axis < 3; ++axis) {
+        std::fill(&lo[axis][begin], &lo[axis][0] + end, std::numeric_limits<float>::max());
+        std::fill(&hi[axis][begin], &hi[axis][0] + end, std::numeric_limits<float>::lowest());
+      }
+      const BoxRow sides{{&lo[0][begin], &lo[1][begin], &lo[2][begin]},
+                         {&hi[0][begin], &hi[1][begin], &hi[2][begin]}};
+      for (std::size_t row = 0; row < narrow.size(); ++row) {
+        const std::size_t at = table.row_offset(static_cast<std::uint32_t>(row)) + begin;
+        extend_boxes(narrow[row], {&table.x[at], &table.y[at], &table.z[at]}, end - begin, sides);
+      }
     });
   }
 
@@ -72,34 +82,6 @@ struct VertexBoxes {
           std::max({h[t.v[0]], h[t.v[1]], h[t.v[2]]}) - std::min({l[t.v[0]], l[t.v[1]], l[t.v[2]]});
     }
     return static_cast<float>(w.area({e[0], e[1], e[2]}));
-  }
-
- private:
-  struct Range {
-    std::size_t begin, end;
-  };
-
-  void fill_block(const PoseTable& table, std::span<const Affine3f> maps, int axis, Range range) {
-    constexpr float kLargest = std::numeric_limits<float>::max();
-    float least[kVertexBlock], most[kVertexBlock];
-    std::fill_n(least, kVertexBlock, kLargest);
-    std::fill_n(most, kVertexBlock, -kLargest);
-    const std::size_t n = range.end - range.begin;
-    for (std::size_t row = 0; row < maps.size(); ++row) {
-      const float* m = maps[row].m[axis];
-      const float m0 = m[0], m1 = m[1], m2 = m[2], m3 = m[3];
-      const std::size_t at = table.row_offset(static_cast<std::uint32_t>(row)) + range.begin;
-      const float* __restrict x = &table.x[at];
-      const float* __restrict y = &table.y[at];
-      const float* __restrict z = &table.z[at];
-      for (std::size_t i = 0; i < n; ++i) {
-        const float p = m0 * x[i] + m1 * y[i] + m2 * z[i] + m3;
-        least[i] = p < least[i] ? p : least[i];
-        most[i] = p > most[i] ? p : most[i];
-      }
-    }
-    std::copy_n(least, n, &lo[axis][range.begin]);
-    std::copy_n(most, n, &hi[axis][range.begin]);
   }
 };
 
@@ -140,41 +122,62 @@ std::size_t move_triangles(const BoxProblem& problem, const BoxClustering& clust
   return sum;
 }
 
+std::vector<Affine3d> rotated(const Affine3d& rotation, std::span<const Affine3d> maps) {
+  std::vector<Affine3d> result;
+  for (const Affine3d& map : maps) result.push_back(rotation * map);
+  return result;
+}
+
+/// Gives the cluster these maps where they make its boxes smaller than the ones it has, if any.
+void keep_cheaper(const BoxMeasure& measure, std::span<const Affine3d> maps, const FaceSums& faces,
+                  BoxCluster& cluster) {
+  ClusterWork work;
+  work.fuzzy_boxes = faces * measure.triangle_weight;
+  work.weights = mean_area_weights(maps, measure.model_areas, measure.cost);
+  if (!cluster.maps.empty() && !(work.area() < cluster.work.area())) return;
+  cluster.maps.assign(maps.begin(), maps.end());
+  cluster.work = work;
+}
+
+double residual_about_middles(const ClusterPoints& points, std::span<const Affine3d> maps) {
+  const PointTargets middles = mapped_boxes(points, maps).centers();
+  const std::vector<float> residuals = point_residuals(points, maps, middles);
+  double sum = 0;
+  for (std::size_t i = 0; i < points.vertex_count; ++i)
+    sum += static_cast<double>(points.weights[i]) * residuals[i];
+  return sum;
+}
+
+double mean_hit_probability(std::span<const Aabb> world_boxes,
+                            std::span<const double> model_areas) {
+  double met = 0, rows = 0;
+  for (std::size_t row = 0; row < world_boxes.size(); ++row) {
+    if (!(model_areas[row] > 0)) continue;
+    met += world_boxes[row].surface_area() / model_areas[row];
+    rows += 1;
+  }
+  return rows > 0 ? met / rows : 1;
+}
+
 }  // namespace
 
 BoxCluster fit_box_cluster(const BoxMeasure& measure, const ClusterPoints& points) {
-  PointFit fit = fit_points(points, row_targets(points, measure.rest_row), points.weights);
-  fit = fit_points(points, mapped_boxes(points, fit.maps).centers(), points.weights);
-
-  std::vector<Affine3d> turned(fit.maps.size());
-  const Affine3d rotation = principal_rotation(fit.scatter);
-  for (std::size_t row = 0; row < turned.size(); ++row) turned[row] = rotation * fit.maps[row];
-
+  const std::vector<SecondMoments> moments = point_moments(points, points.weights);
   BoxCluster cluster;
-  const PointTargets middles = mapped_boxes(points, fit.maps).centers();
-  const std::vector<float> residuals = point_residuals(points, fit.maps, middles);
-  for (std::size_t i = 0; i < points.vertex_count; ++i)
-    cluster.residual += static_cast<double>(points.weights[i]) * residuals[i];
-  for (const std::vector<Affine3d>* maps : {&fit.maps, &turned}) {
-    ClusterWork work;
-    work.fuzzy_boxes = face_sums(points, mapped_boxes(points, *maps)) * measure.triangle_weight;
-    work.weights = mean_area_weights(*maps, measure.model_areas, measure.cost);
-    if (!cluster.maps.empty() &&
-        work.fuzzy_boxes.area(work.weights) >= cluster.work.fuzzy_boxes.area(cluster.work.weights))
-      continue;
-    cluster.maps = *maps;
-    cluster.work = work;
+  PointTargets targets = row_targets(points, measure.rest_row);
+  for (int fit = 0; fit < kFits; ++fit) {
+    const PointFit fitted = fit_points(points, moments, targets, points.weights);
+    const PointBoxes boxes = mapped_boxes(points, fitted.maps);
+    targets = boxes.centers();
+    keep_cheaper(measure, fitted.maps, face_sums(points, boxes), cluster);
+    const std::vector<Affine3d> turned = rotated(principal_rotation(fitted.scatter), fitted.maps);
+    keep_cheaper(measure, turned, face_sums(points, mapped_boxes(points, turned)), cluster);
   }
+  cluster.residual = residual_about_middles(points, cluster.maps);
   cluster.maps = from_table(points, cluster.maps);
-
-  double met = 0, rows = 0;
-  for (std::uint32_t row = 0; row < points.row_count; ++row) {
+  for (std::uint32_t row = 0; row < points.row_count; ++row)
     cluster.world_boxes.push_back(world_box(points, row));
-    if (!(measure.model_areas[row] > 0)) continue;
-    met += cluster.world_boxes.back().surface_area() / measure.model_areas[row];
-    rows += 1;
-  }
-  cluster.work.hit_probability = rows > 0 ? met / rows : 1;
+  cluster.work.hit_probability = mean_hit_probability(cluster.world_boxes, measure.model_areas);
   return cluster;
 }
 

@@ -34,7 +34,7 @@ struct BoxCluster {
   double residual = 0;  ///< sum over rows and corners of squared distances from the boxes' middles
 
   double cost(const CostOptions& options) const {
-    return work.fuzzy_boxes.area(work.weights) + work.hit_probability * options.transform_cost;
+    return work.area() + work.hit_probability * options.transform_cost;
   }
 };
 
@@ -47,8 +47,8 @@ struct BoxClustering {
   std::uint32_t cluster_count() const { return static_cast<std::uint32_t>(clusters.size()); }
 };
 
-/// Fits one cluster: least squares to its shape in the rest row, then to the middles of the
-/// vertices' boxes; the basis is the better of the axes as they are and the principal ones.
+/// Fits one cluster: least squares to its shape in the rest row, and to the middles of the boxes
+/// that gives, each in the axes as they are and in the principal ones; what is cheapest stays.
 /// Cost: O(rows * vertices).
 BoxCluster fit_box_cluster(const BoxMeasure& measure, const ClusterPoints& points);
 

@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <limits>
 
-#include "preprocess/cluster_fit.h"
-
 namespace mdk {
 namespace {
 
-std::size_t padded(std::size_t n) { return (n + kPointLanes - 1) / kPointLanes * kPointLanes; }
+/// Maps of one cluster must not tumble from key to key in the directions in which it is thin, where
+/// only noise speaks: boxes hold between keys, too. So such directions follow the rigid motion.
+constexpr FitOptions kPointFit{.noise = 1e-7, .ridge = 2, .keep_orientation = true};
+
+std::size_t padded(std::size_t n) { return (n + kSumLanes - 1) / kSumLanes * kSumLanes; }
 
 void resize(ClusterPoints& points, std::uint32_t rows, std::uint32_t vertices) {
   points.row_count = rows;
@@ -20,69 +22,36 @@ void resize(ClusterPoints& points, std::uint32_t rows, std::uint32_t vertices) {
   points.weights.assign(points.stride, 0.0f);
 }
 
-/// Independent sums side by side, so that adding up need not wait for itself.
-struct LaneSum {
-  double lane[kPointLanes] = {};
-
-  double total() const {
-    return ((lane[0] + lane[1]) + (lane[2] + lane[3])) +
-           ((lane[4] + lane[5]) + (lane[6] + lane[7]));
-  }
+/// What all rows share when they are fitted to the same targets.
+struct TargetSums {
+  double weight = 0, first[3] = {}, trace = 0;
 };
 
-/// sum of w a and sums of w a b over some arrays b.
-struct FirstAndSecond {
-  double first = 0, second[6] = {};
-};
-
-FirstAndSecond sums_with(const float* __restrict w, const float* __restrict a,
-                         const float* const (&others)[6], std::size_t n) {
-  LaneSum first, second[6];
-  for (std::size_t i = 0; i < n; i += kPointLanes) {
-    double wa[kPointLanes];
-    for (std::size_t l = 0; l < kPointLanes; ++l) {
-      wa[l] = static_cast<double>(w[i + l]) * a[i + l];
-      first.lane[l] += wa[l];
-    }
-    for (int k = 0; k < 6; ++k)
-      for (std::size_t l = 0; l < kPointLanes; ++l) second[k].lane[l] += wa[l] * others[k][i + l];
+TargetSums target_sums(const PointTargets& targets, std::span<const float> weights) {
+  TargetSums sums;
+  for (const float w : weights) sums.weight += static_cast<double>(w);
+  const SecondMoments m = second_moments(targets.row(), weights.data(), weights.size());
+  for (int i = 0; i < 3; ++i) {
+    sums.first[i] = m.first[i];
+    sums.trace += m.second[i][i] - m.first[i] * m.first[i] / sums.weight;
   }
-  FirstAndSecond sums;
-  sums.first = first.total();
-  for (int k = 0; k < 6; ++k) sums.second[k] = second[k].total();
+  sums.trace = std::max(sums.trace, 0.0);
   return sums;
 }
 
-/// lo and hi grow over one coordinate of the mapped vertices of one row.
-void extend_row(const float (&m)[4], const float* __restrict x, const float* __restrict y,
-                const float* __restrict z, float* __restrict lo, float* __restrict hi,
-                std::size_t n) {
-  for (std::size_t i = 0; i < n; ++i) {
-    const float p = m[0] * x[i] + m[1] * y[i] + m[2] * z[i] + m[3];
-    lo[i] = p < lo[i] ? p : lo[i];
-    hi[i] = p > hi[i] ? p : hi[i];
-  }
-}
-
-FitMoments row_moments(const ClusterPoints& points, std::uint32_t row, const PointTargets& targets,
-                       std::span<const float> weights) {
-  const std::size_t at = points.row_offset(row), n = points.stride;
-  const float* const all[6] = {&points.x[at],    &points.y[at],    &points.z[at],
-                               targets.x.data(), targets.y.data(), targets.z.data()};
+FitMoments row_moments(const SecondMoments& source, const double (&cross)[3][3],
+                       const TargetSums& target) {
   FitMoments m;
-  for (const float w : weights) m.weight += static_cast<double>(w);
-  FirstAndSecond sums[6];
-  for (int a = 0; a < 6; ++a) sums[a] = sums_with(weights.data(), all[a], all, n);
+  m.weight = target.weight;
+  m.target_trace = target.trace;
   for (std::size_t i = 0; i < 3; ++i) {
-    m.source_mean[i] = sums[i].first / m.weight;
-    m.target_mean[i] = sums[i + 3].first / m.weight;
-    m.target_trace += sums[i + 3].second[i + 3] - sums[i + 3].first * sums[i + 3].first / m.weight;
+    m.source_mean[i] = source.first[i] / m.weight;
+    m.target_mean[i] = target.first[i] / m.weight;
     for (std::size_t j = 0; j < 3; ++j) {
-      m.source[i][j] = sums[i].second[j] - sums[i].first * sums[j].first / m.weight;
-      m.cross[i][j] = sums[j].second[i + 3] - sums[i + 3].first * sums[j].first / m.weight;
+      m.source[i][j] = source.second[i][j] - source.first[i] * source.first[j] / m.weight;
+      m.cross[i][j] = cross[i][j] - target.first[i] * source.first[j] / m.weight;
     }
   }
-  m.target_trace = std::max(m.target_trace, 0.0);
   return m;
 }
 
@@ -205,15 +174,32 @@ PointTargets row_targets(const ClusterPoints& points, std::uint32_t row) {
           {points.z.begin() + begin, points.z.begin() + end}};
 }
 
+std::vector<SecondMoments> point_moments(const ClusterPoints& points,
+                                         std::span<const float> weights) {
+  std::vector<SecondMoments> moments;
+  moments.reserve(points.row_count);
+  for (std::uint32_t row = 0; row < points.row_count; ++row)
+    moments.push_back(second_moments(points.row(row), weights.data(), points.stride));
+  return moments;
+}
+
 PointFit fit_points(const ClusterPoints& points, const PointTargets& targets,
                     std::span<const float> weights) {
+  return fit_points(points, point_moments(points, weights), targets, weights);
+}
+
+PointFit fit_points(const ClusterPoints& points, std::span<const SecondMoments> moments,
+                    const PointTargets& targets, std::span<const float> weights) {
   PointFit fit;
   fit.maps.resize(points.row_count);
+  const TargetSums target = target_sums(targets, weights);
   Vec3d sum;
   double weight = 0, square[3][3] = {};
   for (std::uint32_t row = 0; row < points.row_count; ++row) {
-    const FitMoments m = row_moments(points, row, targets, weights);
-    const Affine3d map = fit_affine(m, table_fit_options()).target_from_source;
+    double cross[3][3];
+    cross_moments(points.row(row), targets.row(), weights.data(), points.stride, cross);
+    const FitMoments m = row_moments(moments[row], cross, target);
+    const Affine3d map = fit_affine(m, kPointFit).target_from_source;
     fit.maps[row] = map;
     const Vec3d mean = map.point(m.source_mean);
     sum += mean * m.weight;
@@ -234,23 +220,9 @@ PointFit fit_points(const ClusterPoints& points, const PointTargets& targets,
 std::vector<float> point_residuals(const ClusterPoints& points, std::span<const Affine3d> maps,
                                    const PointTargets& targets) {
   std::vector<float> residuals(points.stride, 0.0f);
-  for (std::uint32_t row = 0; row < points.row_count; ++row) {
-    const Affine3f m = to_float(maps[row]);
-    const std::size_t at = points.row_offset(row);
-    const float* __restrict x = &points.x[at];
-    const float* __restrict y = &points.y[at];
-    const float* __restrict z = &points.z[at];
-    const float* const target[3] = {targets.x.data(), targets.y.data(), targets.z.data()};
-    for (int axis = 0; axis < 3; ++axis) {
-      const float* __restrict r = target[axis];
-      float* __restrict out = residuals.data();
-      for (std::size_t i = 0; i < points.stride; ++i) {
-        const float d =
-            m.m[axis][0] * x[i] + m.m[axis][1] * y[i] + m.m[axis][2] * z[i] + (m.m[axis][3] - r[i]);
-        out[i] += d * d;
-      }
-    }
-  }
+  for (std::uint32_t row = 0; row < points.row_count; ++row)
+    add_squared_distances(to_float(maps[row]), points.row(row), targets.row(), points.stride,
+                          residuals.data());
   return residuals;
 }
 
@@ -290,13 +262,9 @@ PointBoxes mapped_boxes(const ClusterPoints& points, std::span<const Affine3d> m
     boxes.lo[axis].assign(points.stride, std::numeric_limits<float>::max());
     boxes.hi[axis].assign(points.stride, std::numeric_limits<float>::lowest());
   }
-  for (std::uint32_t row = 0; row < points.row_count; ++row) {
-    const Affine3f map = to_float(maps[row]);
-    const std::size_t at = points.row_offset(row);
-    for (int axis = 0; axis < 3; ++axis)
-      extend_row(map.m[axis], &points.x[at], &points.y[at], &points.z[at], boxes.lo[axis].data(),
-                 boxes.hi[axis].data(), points.stride);
-  }
+  const BoxRow sides = boxes.row();
+  for (std::uint32_t row = 0; row < points.row_count; ++row)
+    extend_boxes(to_float(maps[row]), points.row(row), points.stride, sides);
   return boxes;
 }
 

@@ -10,6 +10,7 @@
 #include "common/math/aabb.h"
 #include "common/math/vec3.h"
 #include "common/structures/kd_tree_builder.h"
+#include "common/trace/kernels/point_kernels.h"
 #include "preprocess/affine_fit.h"
 #include "preprocess/cluster_members.h"
 #include "preprocess/pose_table.h"
@@ -20,7 +21,7 @@ namespace mdk {
 /// well.
 struct ClusterPoints {
   std::uint32_t row_count = 0, vertex_count = 0;
-  std::size_t stride = 0;              ///< vertex_count rounded up to kPointLanes; the rest is zero
+  std::size_t stride = 0;              ///< vertex_count rounded up to kSumLanes; the rest is zero
   std::vector<Vec3d> centers;          ///< R: table coordinates of each row's origin
   std::vector<float> x, y, z;          ///< R * stride
   std::vector<float> weights;          ///< stride: corners that use the vertex, 0 past the end
@@ -28,14 +29,17 @@ struct ClusterPoints {
 
   std::size_t triangle_count() const { return corners.size() / 3; }
   std::size_t row_offset(std::uint32_t row) const { return row * stride; }
+  PointRow row(std::uint32_t row) const {
+    const std::size_t at = row_offset(row);
+    return {&x[at], &y[at], &z[at]};
+  }
 };
-
-/// Kernels take so many vertices at once.
-inline constexpr std::size_t kPointLanes = 8;
 
 /// Positions in a space that all rows are mapped into: n vertices each, padded like ClusterPoints.
 struct PointTargets {
   std::vector<float> x, y, z;
+
+  PointRow row() const { return {x.data(), y.data(), z.data()}; }
 };
 
 /// Cluster `cluster` of `members` in all rows of the table. Cost: O(rows * vertices).
@@ -61,8 +65,14 @@ struct PointFit {
   double scatter[3][3] = {};   ///< sum over rows and corners of (p - mean)(p - mean)^T, p mapped
 };
 
-/// `weights`: one per vertex, padded like ClusterPoints; at least one must be positive.
-/// Cost: O(rows * vertices).
+/// Second moments of every row; fits to several targets share them. Cost: O(rows * vertices).
+std::vector<SecondMoments> point_moments(const ClusterPoints& points,
+                                         std::span<const float> weights);
+
+/// `weights`: one per vertex, padded like ClusterPoints; at least one must be positive. `moments`:
+/// of the points with these weights. Cost: O(rows * vertices).
+PointFit fit_points(const ClusterPoints& points, std::span<const SecondMoments> moments,
+                    const PointTargets& targets, std::span<const float> weights);
 PointFit fit_points(const ClusterPoints& points, const PointTargets& targets,
                     std::span<const float> weights);
 
@@ -74,6 +84,10 @@ std::vector<float> point_residuals(const ClusterPoints& points, std::span<const 
 /// Boxes of mapped vertices over all rows: one array per side, padded like ClusterPoints.
 struct PointBoxes {
   std::vector<float> lo[3], hi[3];
+
+  BoxRow row() {
+    return {{lo[0].data(), lo[1].data(), lo[2].data()}, {hi[0].data(), hi[1].data(), hi[2].data()}};
+  }
 
   /// The middles.
   PointTargets centers() const;

@@ -76,6 +76,8 @@ struct ClusterWork {
   FaceSums fuzzy_boxes;        ///< of its triangles, in its local basis
   AreaWeights weights;         ///< from mean_area_weights
   double hit_probability = 0;  ///< mean over keys of its world box's area / the model's
+
+  double area() const { return fuzzy_boxes.area(weights); }
 };
 
 /// Sum over triangles of the fuzzy boxes' mean areas in units of the model's: the triangle boxes a

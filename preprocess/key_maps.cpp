@@ -6,6 +6,7 @@
 
 #include "common/base/parallel.h"
 #include "common/motion/model.h"
+#include "preprocess/basis_search.h"
 #include "preprocess/box_clustering.h"
 #include "preprocess/cluster_fit.h"
 #include "preprocess/fuzzy_boxes.h"
@@ -94,7 +95,6 @@ void accept_better(const PoseSequence& sequence, const ClusterMembers& members,
       plain.local_from_world[key * clusters + c] = refined[key * clusters + c];
   }
   plain.refine_gain = sum_before > 0 ? 1 - sum_after / sum_before : 0;
-  plain.box_area = sum_after;
 }
 
 }  // namespace
@@ -120,22 +120,18 @@ KeyMaps fit_small_boxes(const PoseSequence& sequence, const ClusterMembers& memb
           const std::size_t c = first + i;
           const ClusterPoints points =
               gather_points(sequence, members, static_cast<std::uint32_t>(c), request.unit);
-          const BoxCluster fitted = fit_box_cluster(measure, points);
-          store(c, fitted.maps, plain.local_from_world);
+          const std::vector<Affine3d> fitted = turned_to_small_boxes(
+              points, from_centered(points, fit_box_cluster(measure, points).maps),
+              measure.model_areas, measure.cost);
+          store(c, from_table(points, fitted), plain.local_from_world);
           if (!request.refine) return;
-          const std::vector<Affine3d> better = refine_maps(
-              points, from_centered(points, fitted.maps), measure.model_areas, measure.cost);
+          const std::vector<Affine3d> better =
+              refine_maps(points, fitted, measure.model_areas, measure.cost);
           store(c, from_table(points, better), refined);
         });
   }
   report(0.7);
-  if (request.refine) {
-    accept_better(sequence, members, refined, measure.model_areas, plain);
-  } else {
-    for (const double a :
-         areas_at_all_times(sequence, members, plain.local_from_world, measure.model_areas))
-      plain.box_area += a;
-  }
+  if (request.refine) accept_better(sequence, members, refined, measure.model_areas, plain);
   plain.residual = residual_stats(sequence, members, plain.local_from_world, request.rest_key);
   return plain;
 }

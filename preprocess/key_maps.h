@@ -18,7 +18,6 @@ struct ResidualStats {
 };
 
 struct KeyMaps {
-  double box_area = 0;  ///< of all fuzzy boxes at all times, mean share of the model's (cost.h)
   std::vector<Affine3f> local_from_world;  ///< F * K, key-major
   ResidualStats residual;
   double refine_gain = 0;  ///< share by which refinement lowered the summed area of the fuzzy boxes
@@ -31,9 +30,9 @@ struct KeyMapRequest {
   bool refine = true;
 };
 
-/// Maps towards small boxes, cluster by cluster at all keys: least squares, then refinement, kept
-/// where it makes the boxes of all times smaller. `report` hears the share of the work done.
-/// Cost: O(keys * vertices).
+/// Maps towards small boxes, cluster by cluster at all keys: least squares, the rotation that suits
+/// the boxes best, then refinement, kept where it makes the boxes of all times smaller. `report`
+/// hears the share of the work done. Cost: O(keys * vertices).
 KeyMaps fit_small_boxes(const PoseSequence& sequence, const ClusterMembers& members,
                         const KeyMapRequest& request, const std::function<void(double)>& report);
 

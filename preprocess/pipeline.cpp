@@ -13,6 +13,7 @@
 #include "common/base/stopwatch.h"
 #include "preprocess/bone_clusters.h"
 #include "preprocess/bone_maps.h"
+#include "preprocess/clustering.h"
 #include "preprocess/key_maps.h"
 #include "preprocess/model_assembly.h"
 #include "preprocess/motion_clusters.h"
@@ -27,7 +28,6 @@ namespace {
 constexpr std::uint32_t kMaxClusters = 1024;
 constexpr double kDecomposedAt = 0.85;  // share of the whole job, for progress alone
 constexpr double kClusteredAt = 0.8, kMappedAt = 0.95;  // shares of the decomposition
-constexpr double kWildGrowth = 1.5;                     // of the boxes from keys to all times
 constexpr std::size_t kBoneEntries = 2'000'000;  // keys (times vertices) that bones are chosen on
 constexpr std::size_t kMinBoneKeys = 10, kMaxBoneKeys = 200;
 constexpr float kLargestCoordinate = 1e15f;  // areas and volumes must stay far inside float
@@ -161,10 +161,19 @@ Decomposition decide_bones(const PoseSequence& sequence, const DecomposeOptions&
   return result;
 }
 
+/// A cluster per mesh; past the limit the last one takes all.
+std::vector<std::uint32_t> clusters_of_meshes(const PoseSequence& sequence) {
+  std::vector<std::uint32_t> clusters = sequence.triangle_meshes;
+  clusters.resize(sequence.triangles.size(), 0);
+  for (std::uint32_t& c : clusters) c = std::min(c, kMaxClusters - 1);
+  return clusters;
+}
+
 Decomposition decide_nothing(const PoseSequence& sequence, const DecomposeOptions& options) {
   Decomposition result;
   result.clusters.rest_key = options.rest_key.value_or(0);
-  result.clusters.cluster_of_triangle.assign(sequence.triangles.size(), 0);
+  result.clusters.cluster_of_triangle = clusters_of_meshes(sequence);
+  result.clusters.cluster_count = drop_empty_clusters(result.clusters.cluster_of_triangle);
   result.members = members_of(sequence, result.clusters);
   result.maps = identity_key_maps(sequence, result.members, result.clusters.rest_key);
   return result;
@@ -190,17 +199,8 @@ Decomposition decide_motion(const PoseSequence& sequence, const DecomposeOptions
   if (options.stop_percent)
     return with_maps(sequence, cluster_by_residuals(sequence, options, unit, progress), options,
                      progress);
-  Decomposition result =
-      with_maps(sequence, cluster_by_boxes(sequence, options, unit, progress), options, progress);
-  // Growth sees keys only. Where motion between keys is so wild that boxes of all times are much
-  // larger, clusters of least residual motion, which are calmer, may be the better ones.
-  if (result.maps.box_area > kWildGrowth * result.clusters.steps.back().sah_cost) {
-    ProgressPart late(progress, kClusteredAt + (kMappedAt - kClusteredAt) * 0.7, kMappedAt);
-    Decomposition calm =
-        with_maps(sequence, cluster_by_residuals(sequence, options, unit, late), options, late);
-    if (calm.maps.box_area < result.maps.box_area) result = std::move(calm);
-  }
-  return result;
+  return with_maps(sequence, cluster_by_boxes(sequence, options, unit, progress), options,
+                   progress);
 }
 
 Decomposition decide(const PoseSequence& sequence, const DecomposeOptions& options, double unit,

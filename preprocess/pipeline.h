@@ -15,7 +15,7 @@ namespace mdk {
 enum class DecomposeMode {
   kMotion,  ///< clusters of triangles that move alike (GFW06 §3.1)
   kBones,   ///< a cluster for each bone of the rig (preprocess/bone_clusters.h)
-  kNone,    ///< one cluster with identity maps: fuzzy boxes in world space
+  kNone,    ///< a cluster for each mesh, with identity maps: fuzzy boxes in world space
 };
 
 /// The poses that the boxes of bones hold for.

@@ -277,9 +277,9 @@ class SmoothCost final : public ceres::FirstOrderFunction {
       const float* __restrict c = middle_[k].data();
       const float* __restrict h = per_scale.data();
       const float* __restrict w = strength.data();
-      float sx[kPointLanes] = {}, sy[kPointLanes] = {}, sz[kPointLanes] = {}, s1[kPointLanes] = {};
-      for (std::size_t i = 0; i < n; i += kPointLanes)
-        for (std::size_t l = 0; l < kPointLanes; ++l) {
+      float sx[kSumLanes] = {}, sy[kSumLanes] = {}, sz[kSumLanes] = {}, s1[kSumLanes] = {};
+      for (std::size_t i = 0; i < n; i += kSumLanes)
+        for (std::size_t l = 0; l < kSumLanes; ++l) {
           const std::size_t j = i + l;
           const float u = (m0 * x[j] + m1 * y[j] + m2 * z[j] + (m3 - c[j])) * h[j];
           const float g = w[j] * power15(u);
@@ -289,7 +289,7 @@ class SmoothCost final : public ceres::FirstOrderFunction {
           s1[l] += g;
         }
       double* out = gradient + kParametersPerRow * row + 4 * k;
-      for (std::size_t l = 0; l < kPointLanes; ++l) {
+      for (std::size_t l = 0; l < kSumLanes; ++l) {
         out[0] += sx[l];
         out[1] += sy[l];
         out[2] += sz[l];

@@ -55,6 +55,11 @@ void check_appearance(const PoseSequence& s) {
   }
 }
 
+void check_meshes(const PoseSequence& s) {
+  require(s.triangle_meshes.empty() || s.triangle_meshes.size() == s.triangles.size(),
+          "tells the mesh of some triangles only");
+}
+
 /// The lowest vertex that moves alike and is smoothed alike, for each vertex.
 std::vector<std::uint32_t> lowest_alike(const PoseSequence& sequence,
                                         std::span<const std::uint64_t> groups) {
@@ -126,6 +131,7 @@ void check_consistency(const PoseSequence& sequence) {
   for (const Triangle& t : sequence.triangles)
     for (std::uint32_t v : t.v)
       require(v < sequence.vertex_count, "has a triangle with a vertex it does not have");
+  check_meshes(sequence);
   check_appearance(sequence);
   if (sequence.skeleton)
     require(sequence.rig && sequence.rig->bone_maps.size() ==

@@ -35,7 +35,9 @@ struct Clip {
 struct PoseSequence {
   std::uint32_t vertex_count = 0;
   std::vector<Triangle> triangles;
-  std::vector<Clip> clips;        ///< contiguous, in key order, covering every key
+  std::vector<std::uint32_t> triangle_meshes;  ///< per triangle, the mesh of the source it is of,
+                                               ///< from 0 without gaps; empty where there is one
+  std::vector<Clip> clips;                     ///< contiguous, in key order, covering every key
   std::vector<double> key_times;  ///< per key: seconds from its clip's start, rising within a clip
   std::vector<Vec3f> positions;   ///< key-major: vertex i at key k stands at k * vertex_count + i
   std::optional<Rig> rig;         ///< what the positions were decoded from, bit for bit

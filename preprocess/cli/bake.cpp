@@ -102,7 +102,7 @@ DecomposeOptions parse_decompose_options(const BakeArguments& arguments) {
                 "--clusters N and --stop PCT contradict each other; give one of them");
   if (options.mode == DecomposeMode::kNone && (options.clusters > 1 || options.stop_percent))
     throw Error(ErrorCode::kUsage,
-                "--decompose none makes one cluster; leave --clusters and --stop out");
+                "--decompose none makes one cluster per mesh; leave --clusters and --stop out");
   if (options.mode == DecomposeMode::kBones && (options.clusters > 0 || options.stop_percent))
     throw Error(ErrorCode::kUsage,
                 "--decompose bones makes a cluster for each bone; leave --clusters and --stop out");
@@ -198,7 +198,7 @@ void add_decompose_options(CLI::App& command, BakeArguments& arguments) {
   command
       .add_option("--decompose", arguments.mode,
                   "motion: clusters of triangles that move alike; bones: a cluster for each bone\n"
-                  "or rigid part; none: one cluster that does not move (default: motion).")
+                  "or rigid part; none: one cluster per mesh, which does not move (default: motion).")
       ->type_name("motion|bones|none");
   command
       .add_option("--sampling", arguments.sampling,

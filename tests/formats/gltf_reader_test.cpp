@@ -129,6 +129,7 @@ TEST(GltfReader, AMeshShownTwiceBecomesTwoSetsOfTriangles) {
   const PoseSequence s = read_built(b).sequence;
   EXPECT_THAT(s.triangles, ElementsAre(tri(0, 1, 2), tri(3, 4, 5)));
   expect_pose(s, 0, {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 5}, {1, 0, 5}, {0, 1, 5}});
+  EXPECT_EQ(s.triangle_meshes, (std::vector<std::uint32_t>{0, 1}));
 }
 
 TEST(GltfReader, AMirroredNodeKeepsItsTrianglesFacingOutside) {

@@ -234,6 +234,25 @@ TEST(Decompose, NoneIsOneClusterInTheWorldItself) {
   EXPECT_GT(result.stats.residual_rms, 0.01);
 }
 
+TEST(Decompose, NoneIsAClusterPerMeshOfTheSource) {
+  PoseSequence sequence = independent_parts(3, 8);
+  const std::size_t triangles = sequence.triangles.size();
+  for (std::size_t t = 0; t < triangles; ++t)
+    sequence.triangle_meshes.push_back(static_cast<std::uint32_t>(3 * t / triangles));
+  DecomposeOptions options;
+  options.mode = DecomposeMode::kNone;
+  const DecomposeResult result = run(sequence, options);
+  ASSERT_EQ(result.model.clusters.size(), 3u);
+  expect_sound(result.model, sequence);
+  for (const Affine3f& map : result.model.local_from_world) EXPECT_EQ(map, Affine3f{});
+  for (std::uint32_t c = 0; c < 3; ++c) {
+    const Cluster& cluster = result.model.clusters[c];
+    for (std::uint32_t i = 0; i < cluster.triangle_count; ++i)
+      EXPECT_EQ(sequence.triangle_meshes[result.model.source_triangles[cluster.first_triangle + i]],
+                c);
+  }
+}
+
 TEST(Decompose, MotionMakesTheCostOfMovingPartsAFractionOfNone) {
   const PoseSequence sequence = independent_parts(3, 20);
   DecomposeOptions none;

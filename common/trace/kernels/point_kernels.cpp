@@ -1,0 +1,203 @@
+// A vector holds one coordinate of as many points as it has lanes. Sums have kSumLanes lanes
+// whatever the vector's width: a narrower vector takes them in several passes, so that each lane
+// adds up the same points in the same order.
+#include "common/trace/kernels/point_kernels.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "common/trace/kernels/point_kernels.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+// after highway.h
+HWY_BEFORE_NAMESPACE();
+namespace mdk {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+using SumTag = hn::CappedTag<double, kSumLanes>;
+using SumVec = hn::Vec<SumTag>;
+using FloatTag = hn::ScalableTag<float>;
+using FloatVec = hn::Vec<FloatTag>;
+
+HWY_INLINE SumVec load_as_double(const float* p) {
+  return hn::PromoteTo(SumTag(), hn::LoadU(hn::Rebind<float, SumTag>(), p));
+}
+
+HWY_INLINE SumVec add_product(SumVec sum, SumVec a, SumVec b) {
+  return hn::Add(sum, hn::Mul(a, b));
+}
+
+double lane_total(const double* lane) {
+  return ((lane[0] + lane[1]) + (lane[2] + lane[3])) + ((lane[4] + lane[5]) + (lane[6] + lane[7]));
+}
+
+void Second(const PointRow& points, const float* weights, std::size_t n, SecondMoments& moments) {
+  const SumTag d;
+  double lanes[9][kSumLanes];
+  for (std::size_t part = 0; part < kSumLanes; part += hn::Lanes(d)) {
+    SumVec x = hn::Zero(d), y = x, z = x, xx = x, yy = x, zz = x, xy = x, yz = x, zx = x;
+    for (std::size_t i = part; i < n; i += kSumLanes) {
+      const SumVec w = load_as_double(weights + i);
+      const SumVec px = load_as_double(points.x + i), py = load_as_double(points.y + i),
+                   pz = load_as_double(points.z + i);
+      const SumVec wx = hn::Mul(w, px), wy = hn::Mul(w, py), wz = hn::Mul(w, pz);
+      x = hn::Add(x, wx);
+      y = hn::Add(y, wy);
+      z = hn::Add(z, wz);
+      xx = add_product(xx, wx, px);
+      yy = add_product(yy, wy, py);
+      zz = add_product(zz, wz, pz);
+      xy = add_product(xy, wx, py);
+      yz = add_product(yz, wy, pz);
+      zx = add_product(zx, wz, px);
+    }
+    const SumVec sums[9] = {x, y, z, xx, yy, zz, xy, yz, zx};
+    for (int s = 0; s < 9; ++s) hn::StoreU(sums[s], d, &lanes[s][part]);
+  }
+  double total[9];
+  for (int s = 0; s < 9; ++s) total[s] = lane_total(lanes[s]);
+  for (int i = 0; i < 3; ++i) {
+    const int j = (i + 1) % 3;
+    moments.first[i] = total[i];
+    moments.second[i][i] = total[3 + i];
+    moments.second[i][j] = moments.second[j][i] = total[6 + i];
+  }
+}
+
+void Cross(const PointRow& points, const PointRow& targets, const float* weights, std::size_t n,
+           double (&sum)[3][3]) {
+  const SumTag d;
+  double lanes[9][kSumLanes];
+  for (std::size_t part = 0; part < kSumLanes; part += hn::Lanes(d)) {
+    SumVec xx = hn::Zero(d), xy = xx, xz = xx, yx = xx, yy = xx, yz = xx, zx = xx, zy = xx, zz = xx;
+    for (std::size_t i = part; i < n; i += kSumLanes) {
+      const SumVec w = load_as_double(weights + i);
+      const SumVec px = load_as_double(points.x + i), py = load_as_double(points.y + i),
+                   pz = load_as_double(points.z + i);
+      const SumVec tx = hn::Mul(w, load_as_double(targets.x + i)),
+                   ty = hn::Mul(w, load_as_double(targets.y + i)),
+                   tz = hn::Mul(w, load_as_double(targets.z + i));
+      xx = add_product(xx, tx, px);
+      xy = add_product(xy, tx, py);
+      xz = add_product(xz, tx, pz);
+      yx = add_product(yx, ty, px);
+      yy = add_product(yy, ty, py);
+      yz = add_product(yz, ty, pz);
+      zx = add_product(zx, tz, px);
+      zy = add_product(zy, tz, py);
+      zz = add_product(zz, tz, pz);
+    }
+    const SumVec sums[9] = {xx, xy, xz, yx, yy, yz, zx, zy, zz};
+    for (int s = 0; s < 9; ++s) hn::StoreU(sums[s], d, &lanes[s][part]);
+  }
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) sum[i][j] = lane_total(lanes[3 * i + j]);
+}
+
+/// One coordinate of mapped points.
+struct MapRow {
+  FloatVec x, y, z, shift;
+
+  explicit MapRow(const float (&m)[4])
+      : x(hn::Set(FloatTag(), m[0])),
+        y(hn::Set(FloatTag(), m[1])),
+        z(hn::Set(FloatTag(), m[2])),
+        shift(hn::Set(FloatTag(), m[3])) {}
+
+  HWY_INLINE FloatVec of(FloatVec px, FloatVec py, FloatVec pz) const {
+    return hn::Add(offset(px, py, pz), shift);
+  }
+  HWY_INLINE FloatVec distance(FloatVec px, FloatVec py, FloatVec pz, const float* target) const {
+    return hn::Add(offset(px, py, pz), hn::Sub(shift, hn::LoadU(FloatTag(), target)));
+  }
+
+ private:
+  HWY_INLINE FloatVec offset(FloatVec px, FloatVec py, FloatVec pz) const {
+    return hn::Add(hn::Add(hn::Mul(x, px), hn::Mul(y, py)), hn::Mul(z, pz));
+  }
+};
+
+HWY_INLINE void extend_side(FloatVec p, float* lo, float* hi) {
+  const FloatTag d;
+  hn::StoreU(hn::Min(hn::LoadU(d, lo), p), d, lo);
+  hn::StoreU(hn::Max(hn::LoadU(d, hi), p), d, hi);
+}
+
+void Extend(const Affine3f& map, const PointRow& points, std::size_t n, const BoxRow& boxes) {
+  const FloatTag d;
+  const MapRow first(map.m[0]), second(map.m[1]), third(map.m[2]);
+  std::size_t i = 0;
+  for (; i + hn::Lanes(d) <= n; i += hn::Lanes(d)) {
+    const FloatVec x = hn::LoadU(d, points.x + i), y = hn::LoadU(d, points.y + i),
+                   z = hn::LoadU(d, points.z + i);
+    extend_side(first.of(x, y, z), boxes.lo[0] + i, boxes.hi[0] + i);
+    extend_side(second.of(x, y, z), boxes.lo[1] + i, boxes.hi[1] + i);
+    extend_side(third.of(x, y, z), boxes.lo[2] + i, boxes.hi[2] + i);
+  }
+  for (; i < n; ++i)
+    for (int axis = 0; axis < 3; ++axis) {
+      const float* m = map.m[axis];
+      const float p = m[0] * points.x[i] + m[1] * points.y[i] + m[2] * points.z[i] + m[3];
+      float &lo = boxes.lo[axis][i], &hi = boxes.hi[axis][i];
+      lo = p < lo ? p : lo;
+      hi = p > hi ? p : hi;
+    }
+}
+
+void AddDistances(const Affine3f& map, const PointRow& points, const PointRow& targets,
+                  std::size_t n, float* out) {
+  const FloatTag d;
+  const MapRow first(map.m[0]), second(map.m[1]), third(map.m[2]);
+  const float* const target[3] = {targets.x, targets.y, targets.z};
+  std::size_t i = 0;
+  for (; i + hn::Lanes(d) <= n; i += hn::Lanes(d)) {
+    const FloatVec x = hn::LoadU(d, points.x + i), y = hn::LoadU(d, points.y + i),
+                   z = hn::LoadU(d, points.z + i);
+    const FloatVec dx = first.distance(x, y, z, targets.x + i),
+                   dy = second.distance(x, y, z, targets.y + i),
+                   dz = third.distance(x, y, z, targets.z + i);
+    const FloatVec sum = hn::Add(hn::Add(hn::LoadU(d, out + i), hn::Mul(dx, dx)), hn::Mul(dy, dy));
+    hn::StoreU(hn::Add(sum, hn::Mul(dz, dz)), d, out + i);
+  }
+  for (; i < n; ++i)
+    for (int axis = 0; axis < 3; ++axis) {
+      const float* m = map.m[axis];
+      const float p =
+          m[0] * points.x[i] + m[1] * points.y[i] + m[2] * points.z[i] + (m[3] - target[axis][i]);
+      out[i] += p * p;
+    }
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace mdk
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace mdk {
+
+HWY_EXPORT(Second);
+HWY_EXPORT(Cross);
+HWY_EXPORT(Extend);
+HWY_EXPORT(AddDistances);
+
+SecondMoments second_moments(const PointRow& points, const float* weights, std::size_t n) {
+  SecondMoments moments;
+  HWY_DYNAMIC_DISPATCH(Second)(points, weights, n, moments);
+  return moments;
+}
+
+void cross_moments(const PointRow& points, const PointRow& targets, const float* weights,
+                   std::size_t n, double (&sum)[3][3]) {
+  HWY_DYNAMIC_DISPATCH(Cross)(points, targets, weights, n, sum);
+}
+
+void extend_boxes(const Affine3f& map, const PointRow& points, std::size_t n, const BoxRow& boxes) {
+  HWY_DYNAMIC_DISPATCH(Extend)(map, points, n, boxes);
+}
+
+void add_squared_distances(const Affine3f& map, const PointRow& points, const PointRow& targets,
+                           std::size_t n, float* out) {
+  HWY_DYNAMIC_DISPATCH(AddDistances)(map, points, targets, n, out);
+}
+
+}  // namespace mdk
+#endif  // HWY_ONCE

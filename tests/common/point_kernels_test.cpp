@@ -1,0 +1,160 @@
+// The point kernels against plain sums and boxes, and the same bits on every instruction set.
+#include "common/trace/kernels/point_kernels.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <limits>
+#include <random>
+#include <vector>
+
+#include "common/base/isa.h"
+
+namespace mdk {
+namespace {
+
+constexpr std::size_t kMultiples[] = {8, 16, 40, 104};
+constexpr std::size_t kAnyCounts[] = {1, 7, 8, 15, 16, 17, 33, 100};
+
+struct Points {
+  std::vector<float> x, y, z, weights;
+
+  Points(std::size_t n, std::uint32_t seed) {
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<float> place(-3, 3);
+    for (std::size_t i = 0; i < n; ++i) {
+      x.push_back(place(random));
+      y.push_back(place(random));
+      z.push_back(place(random));
+      weights.push_back(static_cast<float>(i % 7));
+    }
+  }
+  PointRow row() const { return {x.data(), y.data(), z.data()}; }
+  double at(int axis, std::size_t i) const {
+    return static_cast<double>((axis == 0 ? x : axis == 1 ? y : z)[i]);
+  }
+};
+
+struct Boxes {
+  std::vector<float> lo[3], hi[3];
+
+  explicit Boxes(std::size_t n) {
+    for (int axis = 0; axis < 3; ++axis) {
+      lo[axis].assign(n, std::numeric_limits<float>::max());
+      hi[axis].assign(n, std::numeric_limits<float>::lowest());
+    }
+  }
+  BoxRow row() {
+    return {{lo[0].data(), lo[1].data(), lo[2].data()}, {hi[0].data(), hi[1].data(), hi[2].data()}};
+  }
+  bool operator==(const Boxes&) const = default;
+};
+
+Affine3f some_map(float turn) {
+  return {{{1, turn, 0.5f, -2}, {-turn, 0.25f, 1, 0.125f}, {0.3f, -0.7f, 2, turn}}};
+}
+
+/// Everything the kernels compute, to be compared bit by bit.
+struct Results {
+  std::vector<double> sums;
+  std::vector<float> distances;
+  std::vector<Boxes> boxes;
+  bool operator==(const Results&) const = default;
+};
+
+Results run_all() {
+  Results results;
+  for (const std::size_t n : kMultiples) {
+    const Points p(n, 1), q(n, 2);
+    const SecondMoments m = second_moments(p.row(), p.weights.data(), n);
+    results.sums.insert(results.sums.end(), m.first, m.first + 3);
+    for (const auto& row : m.second) results.sums.insert(results.sums.end(), row, row + 3);
+    double cross[3][3];
+    cross_moments(p.row(), q.row(), p.weights.data(), n, cross);
+    for (const auto& row : cross) results.sums.insert(results.sums.end(), row, row + 3);
+  }
+  for (const std::size_t n : kAnyCounts) {
+    const Points p(n, 3), q(n, 4);
+    std::vector<float> distances(n, 0.25f);
+    add_squared_distances(some_map(0.4f), p.row(), q.row(), n, distances.data());
+    results.distances.insert(results.distances.end(), distances.begin(), distances.end());
+    Boxes boxes(n);
+    for (const float turn : {0.0f, -0.6f, 1.7f})
+      extend_boxes(some_map(turn), p.row(), n, boxes.row());
+    results.boxes.push_back(boxes);
+  }
+  return results;
+}
+
+class PointKernels : public testing::TestWithParam<std::string_view> {
+ protected:
+  void SetUp() override { limit_isa(GetParam()); }
+  void TearDown() override { reset_isa(); }
+};
+
+TEST_P(PointKernels, SumMomentsAsAPlainLoopDoes) {
+  for (const std::size_t n : kMultiples) {
+    const Points p(n, 5), q(n, 6);
+    const SecondMoments m = second_moments(p.row(), p.weights.data(), n);
+    double cross[3][3];
+    cross_moments(p.row(), q.row(), p.weights.data(), n, cross);
+    for (int i = 0; i < 3; ++i) {
+      double first = 0, second[3] = {}, mixed[3] = {};
+      for (std::size_t k = 0; k < n; ++k) {
+        const double w = static_cast<double>(p.weights[k]);
+        first += w * p.at(i, k);
+        for (int j = 0; j < 3; ++j) {
+          second[j] += w * p.at(i, k) * p.at(j, k);
+          mixed[j] += w * q.at(i, k) * p.at(j, k);
+        }
+      }
+      EXPECT_NEAR(m.first[i], first, 1e-9);
+      for (int j = 0; j < 3; ++j) {
+        EXPECT_NEAR(m.second[i][j], second[j], 1e-9);
+        EXPECT_NEAR(cross[i][j], mixed[j], 1e-9);
+      }
+    }
+  }
+}
+
+TEST_P(PointKernels, BoxesHoldWhatTheMapsSendThere) {
+  for (const std::size_t n : kAnyCounts) {
+    const Points p(n, 7);
+    Boxes boxes(n);
+    for (const float turn : {0.0f, 0.9f}) extend_boxes(some_map(turn), p.row(), n, boxes.row());
+    for (std::size_t i = 0; i < n; ++i) {
+      const Vec3f v{p.x[i], p.y[i], p.z[i]};
+      const Vec3f a = some_map(0.0f).point(v), b = some_map(0.9f).point(v);
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        EXPECT_EQ(boxes.lo[axis][i], std::min(a[axis], b[axis]));
+        EXPECT_EQ(boxes.hi[axis][i], std::max(a[axis], b[axis]));
+      }
+    }
+  }
+}
+
+TEST_P(PointKernels, DistancesAreAddedToWhatIsThere) {
+  for (const std::size_t n : kAnyCounts) {
+    const Points p(n, 8), q(n, 9);
+    std::vector<float> distances(n, 10.0f);
+    add_squared_distances(some_map(0.5f), p.row(), q.row(), n, distances.data());
+    for (std::size_t i = 0; i < n; ++i) {
+      const Vec3f d =
+          some_map(0.5f).point({p.x[i], p.y[i], p.z[i]}) - Vec3f{q.x[i], q.y[i], q.z[i]};
+      EXPECT_NEAR(distances[i], 10 + dot(d, d), 1e-4f * (10 + dot(d, d)));
+    }
+  }
+}
+
+TEST_P(PointKernels, GiveTheBitsOfTheWeakestInstructionSet) {
+  const Results here = run_all();
+  limit_isa(available_isas().front());
+  EXPECT_TRUE(here == run_all());
+}
+
+INSTANTIATE_TEST_SUITE_P(Isas, PointKernels, testing::ValuesIn(available_isas()),
+                         [](const auto& tested) { return std::string(tested.param); });
+
+}  // namespace
+}  // namespace mdk
