@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 namespace mdk {
 namespace {
@@ -21,16 +22,38 @@ Matrix to_eigen(const double (&m)[3][3]) {
 
 Eigen::Vector3d to_eigen(const Vec3d& v) { return {v.x, v.y, v.z}; }
 
+/// The rotation nearest to a matrix of positive determinant, by Newton's iteration for the polar
+/// factor (Higham 1986), which converges quadratically; none where the matrix is near singular.
+std::optional<Matrix> nearest_rotation_quickly(const Matrix& m) {
+  constexpr double kLeastDeterminant = 1e-3;  // of that of a rotation of the same norm
+  constexpr int kMostSteps = 12;
+  const double scale = std::sqrt(3.0) / m.norm();
+  if (!(m.determinant() * scale * scale * scale > kLeastDeterminant)) return std::nullopt;
+  Matrix rotation = m * scale;
+  for (int step = 0; step < kMostSteps; ++step) {
+    const Matrix next = 0.5 * (rotation + rotation.inverse().transpose());
+    const double change = (next - rotation).squaredNorm();
+    rotation = next;
+    if (change < 1e-18) return rotation;  // the next step would change its square: nothing
+  }
+  return std::nullopt;
+}
+
+/// The proper rotation nearest to a matrix.
+Matrix nearest_rotation(const Matrix& m) {
+  if (const std::optional<Matrix> rotation = nearest_rotation_quickly(m)) return *rotation;
+  const Eigen::JacobiSVD<Matrix> svd(m, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  Matrix u = svd.matrixU();
+  if ((u * svd.matrixV().transpose()).determinant() < 0) u.col(2) = -u.col(2);
+  return u * svd.matrixV().transpose();
+}
+
 /// The similarity that maps source to target best; its rotation is proper. A little identity in the
 /// cross moments settles rotations that the points leave open (about a line, of a point).
 Matrix best_similarity(const Matrix& cross, const Matrix& source, double max_scale) {
   const double size = cross.norm();
-  const Matrix settled = cross + Matrix::Identity() * (1e-9 * size);
   if (!(size > std::numeric_limits<double>::min())) return Matrix::Identity();
-  const Eigen::JacobiSVD<Matrix> svd(settled, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  Matrix u = svd.matrixU();
-  if ((u * svd.matrixV().transpose()).determinant() < 0) u.col(2) = -u.col(2);
-  const Matrix rotation = u * svd.matrixV().transpose();
+  const Matrix rotation = nearest_rotation(cross + Matrix::Identity() * (1e-9 * size));
   const double trace = source.trace();
   const double scale = trace > 0 ? (rotation.transpose() * cross).trace() / trace : 1.0;
   return rotation * std::clamp(scale, 1 / max_scale, max_scale);

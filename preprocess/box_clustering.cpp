@@ -2,15 +2,14 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
-#include <limits>
 #include <utility>
 
 #include "common/base/parallel.h"
+#include "preprocess/box_alternatives.h"
 
 namespace mdk {
 namespace {
 
-constexpr std::size_t kVertexBlock = 256;
 constexpr std::size_t kTrianglesPerChunk = 2048;
 constexpr std::uint32_t kRowsForGrowth = 8;
 constexpr int kFits = 2;  // to the rest pose, then to the middles of the boxes
@@ -45,45 +44,6 @@ Aabb world_box(const ClusterPoints& points, std::uint32_t row) {
   const Vec3f center = to_float(points.centers[row]);
   return {box.lo + center, box.hi + center};
 }
-
-/// Boxes of all vertices under one cluster's maps, one array per side.
-struct VertexBoxes {
-  std::vector<float> lo[3], hi[3];
-
-  explicit VertexBoxes(std::size_t vertices) {
-    for (int axis = 0; axis < 3; ++axis) {
-      lo[axis].resize(vertices);
-      hi[axis].resize(vertices);
-    }
-  }
-
-  void fill(const PoseTable& table, std::span<const Affine3d> maps) {
-    std::vector<Affine3f> narrow;
-    for (const Affine3d& m : maps) narrow.push_back(to_float(m));
-    parallel_chunks(table.vertex_count, kVertexBlock, [&](std::size_t begin, std::size_t end) {
-      for (int axis = 0; axis < 3; ++axis) {
-        std::fill(&lo[axis][begin], &lo[axis][0] + end, std::numeric_limits<float>::max());
-        std::fill(&hi[axis][begin], &hi[axis][0] + end, std::numeric_limits<float>::lowest());
-      }
-      const BoxRow sides{{&lo[0][begin], &lo[1][begin], &lo[2][begin]},
-                         {&hi[0][begin], &hi[1][begin], &hi[2][begin]}};
-      for (std::size_t row = 0; row < narrow.size(); ++row) {
-        const std::size_t at = table.row_offset(static_cast<std::uint32_t>(row)) + begin;
-        extend_boxes(narrow[row], {&table.x[at], &table.y[at], &table.z[at]}, end - begin, sides);
-      }
-    });
-  }
-
-  float area(const Triangle& t, const AreaWeights& w) const {
-    float e[3];
-    for (int axis = 0; axis < 3; ++axis) {
-      const std::vector<float>&l = lo[axis], &h = hi[axis];
-      e[axis] =
-          std::max({h[t.v[0]], h[t.v[1]], h[t.v[2]]}) - std::min({l[t.v[0]], l[t.v[1]], l[t.v[2]]});
-    }
-    return static_cast<float>(w.area({e[0], e[1], e[2]}));
-  }
-};
 
 /// What a triangle would add to the price of entering a cluster: its world boxes grow.
 double entry_growth(const BoxProblem& problem, const BoxCluster& cluster, const Triangle& t) {
@@ -194,40 +154,6 @@ BoxClustering fit_boxes(const BoxProblem& problem, std::vector<std::uint32_t> cl
   });
   for (const BoxCluster& c : result.clusters) result.cost += c.cost(problem.measure.cost);
   return result;
-}
-
-BoxAlternatives find_alternatives(const BoxProblem& problem, const BoxClustering& clustering) {
-  const std::span<const Triangle> triangles = problem.mesh.triangles;
-  BoxAlternatives result;
-  result.own_area.resize(triangles.size());
-  result.other_area.assign(triangles.size(), std::numeric_limits<float>::infinity());
-  result.other.assign(triangles.size(), 0);
-  VertexBoxes boxes(problem.mesh.poses.vertex_count);
-  for (std::uint32_t c = 0; c < clustering.cluster_count(); ++c) {
-    const BoxCluster& cluster = clustering.clusters[c];
-    const AreaWeights weights = cluster.work.weights * problem.measure.triangle_weight;
-    boxes.fill(problem.mesh.poses, cluster.maps);
-    parallel_chunks(triangles.size(), kTrianglesPerChunk, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t t = begin; t < end; ++t) {
-        const float area = boxes.area(triangles[t], weights);
-        if (clustering.cluster_of_triangle[t] == c) {
-          result.own_area[t] = area;
-        } else if (area < result.other_area[t]) {
-          result.other_area[t] = area;
-          result.other[t] = c;
-        }
-      }
-    });
-  }
-  return result;
-}
-
-std::vector<std::uint32_t> assign_to_smallest_boxes(const BoxProblem& problem,
-                                                    std::vector<BoxCluster> clusters) {
-  BoxClustering nowhere;
-  nowhere.clusters = std::move(clusters);
-  nowhere.cluster_of_triangle.assign(problem.mesh.triangles.size(), nowhere.cluster_count());
-  return find_alternatives(problem, nowhere).other;
 }
 
 BoxClustering relax_boxes(const BoxProblem& problem, BoxClustering start,

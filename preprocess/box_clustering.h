@@ -55,20 +55,6 @@ BoxCluster fit_box_cluster(const BoxMeasure& measure, const ClusterPoints& point
 /// Fits all clusters of an assignment; empty ones are dropped. Runs in parallel.
 BoxClustering fit_boxes(const BoxProblem& problem, std::vector<std::uint32_t> cluster_of_triangle);
 
-/// Where each triangle would have the smallest box if not in its own cluster.
-struct BoxAlternatives {
-  std::vector<float> own_area;       ///< T: of the fuzzy box in its own cluster
-  std::vector<float> other_area;     ///< T: in the best other cluster; infinite if there is none
-  std::vector<std::uint32_t> other;  ///< T
-};
-
-/// Cost: O(K * rows * vertices), vectorised, in parallel.
-BoxAlternatives find_alternatives(const BoxProblem& problem, const BoxClustering& clustering);
-
-/// Gives every triangle to the cluster in which its box is smallest.
-std::vector<std::uint32_t> assign_to_smallest_boxes(const BoxProblem& problem,
-                                                    std::vector<BoxCluster> clusters);
-
 /// Rounds of moving triangles to the cluster that costs least and fitting again, as long as the
 /// cost falls by more than `min_gain` of itself, at most `max_rounds`.
 BoxClustering relax_boxes(const BoxProblem& problem, BoxClustering start,

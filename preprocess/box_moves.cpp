@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "common/base/parallel.h"
+#include "preprocess/box_alternatives.h"
 
 namespace mdk {
 namespace {

@@ -8,6 +8,7 @@
 #include <span>
 #include <utility>
 
+#include "preprocess/box_alternatives.h"
 #include "preprocess/box_growth.h"
 #include "preprocess/cluster_growth.h"
 #include "preprocess/key_sampling.h"
