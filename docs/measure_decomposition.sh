@@ -55,6 +55,7 @@ if has_option --refine; then paper+=(--refine off); fi
 bake_and_trace() {
   local name=$1 kind=$2 file=$work/$1.$2
   shift 2
+  printf '%s, %s\n' "$name" "$kind" >&2
   # shellcheck disable=SC2046
   "$mdprep" bake $(source_of "$name") "$@" -o "$file.mdk" --report "$file.bake.json" -v --progress never \
     2>"$file.log" || { cat "$file.log" >&2; return 1; }
@@ -98,7 +99,6 @@ for name in "$@"; do
   if [[ $files == "$build/samples"* && ! -f ${files%% *} ]]; then
     cmake --build "$build" --target samples >/dev/null || die 'the samples could not be made'
   fi
-  printf '%s\n' "$name" >&2
   bake_and_trace "$name" paper "${paper[@]}"
   bake_and_trace "$name" ours "${one_segment[@]}"
   if ((${#one_segment[@]})); then bake_and_trace "$name" auto; else cp "$work/$name.ours.json" "$work/$name.auto.json"; fi
@@ -230,11 +230,11 @@ $(rows '[($p.bake.triangles, $p.bake.keys, $p.bake.clusters, $o.bake.clusters | 
 
 ## Time and memory of a bake
 
-Of *auto*, in seconds; timings of one run.
+Of *auto*, in seconds, and the totals of *ours* and *paper*; timings of one run.
 
-| model | read | decompose | build | write | total | total paper | peak memory | file |
-|---|---|---|---|---|---|---|---|---|
-$(rows '[($a.bake.seconds | .read, .decompose, .build, .write, .total | f(2)), ($p.bake.seconds.total | f(2)),
+| model | read | decompose | build | write | total | total ours | total paper | peak memory | file |
+|---|---|---|---|---|---|---|---|---|---|
+$(rows '[($a.bake.seconds | .read, .decompose, .build, .write, .total | f(2)), ($o, $p | .bake.seconds.total | f(2)),
    (($a.bake.peak_memory_bytes, $a.bake.file_bytes) / 1048576 | f(1) + " MiB")]')
 
 ## While clusters are added

@@ -91,7 +91,7 @@ TEST_F(Bake, OptionsReachTheDecomposition) {
   EXPECT_GT(report_with({"--clusters", "4"})["refine_gain"], 0.0);
   EXPECT_EQ(report_with({"--clusters", "4", "--refine", "off"})["refine_gain"], 0.0);
   EXPECT_EQ(report_with({"--stop", "50"})["stop_reason"], "percent");
-  EXPECT_EQ(report_with({"--decompose", "none"})["clusters"], 1);
+  EXPECT_EQ(report_with({"--decompose", "none"})["clusters"], 2) << "a tube and a cube";
   EXPECT_EQ(report_with({"--decompose", "none"})["stop_reason"], "none");
   const Json bones = report_with({"--decompose", "bones"});
   EXPECT_EQ(bones["stop_reason"], "bones");

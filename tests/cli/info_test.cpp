@@ -50,7 +50,7 @@ TEST_F(Info, AreasTellHowLooseTheBoxesAre) {
   const Json info = Json::parse(run_mdprep({"info", baked(), "--json", "--areas"}).out);
   EXPECT_GT(info["tight_area"], 0.1);
   EXPECT_GE(info["fuzzy_area"], info["tight_area"]) << "boxes for all times hold those of one";
-  // One cluster that does not move has far looser boxes.
+  // Clusters that do not move have far looser boxes.
   ASSERT_EQ(
       run_mdprep({"bake", source(), "-o", folder_.file("one.mdk"), "--decompose", "none"}).status,
       0);
