@@ -32,7 +32,7 @@ PoseSequence read_sample(const Sample& sample) {
   options.clips = sample.clips;
   SilentProgress progress;
   const std::string path = std::string(MDK_SOURCE_DIR) + "/assets/" + sample.name + ".glb";
-  return read_source(std::vector<std::string>{path}, options, progress).sequence;
+  return read_source(find_source(std::vector<std::string>{path}), options, progress).sequence;
 }
 
 DecomposeResult bake(PoseSequence sequence) {
