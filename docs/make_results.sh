@@ -2,11 +2,11 @@
 # Measures every technique and writes docs/results/benchmark.json, the document and pictures made from
 # it, and the figures that README.md and docs/ quote from it.
 #
-#   docs/make_results.sh [--quick] [-o FOLDER] [bake | write]
+#   docs/make_results.sh [--quick] [--models NAME,…] [-o FOLDER] [bake | write]
 #
 # bake: only make and bake the models. write: measure nothing, make the documents from
 # FOLDER/benchmark.json. --quick: small pictures of small models, to try the whole way in a minute.
-# With -o, nothing outside FOLDER is touched.
+# --models: those alone. With -o, no document outside FOLDER is touched.
 #
 # Every result is kept in build/results, by the program that was measured: started again after an
 # interruption, it goes on where it was. Bakes are kept there too, so that the measuring itself can be
@@ -21,12 +21,16 @@ die() { printf 'make_results: %s\n' "$*" >&2; exit 1; }
 say() { printf '%(%H:%M:%S)T %s\n' -1 "$*" >&2; }
 [[ -x $mdprep && -x build/release/bin/make_sample ]] || die 'there is no build; run ./run build first'
 
-quick= results=docs/results step=all
+quick= only= results=docs/results step=all
 while (($#)); do
   case $1 in
     --quick) quick=-quick ;;
     -o)
       results=${2:?-o needs a folder}
+      shift
+      ;;
+    --models)
+      only=${2:?--models needs names}
       shift
       ;;
     bake | write) step=$1 ;;
@@ -55,6 +59,18 @@ if [[ $quick ]]; then
   further=(hand hand-split1)
   further_options=(--techniques "$few")
 fi
+
+# those_asked_for NAME…: into `kept`, what --models leaves.
+those_asked_for() {
+  local name
+  kept=()
+  for name; do if [[ -z $only || ,$only, == *,$name,* ]]; then kept+=("$name"); fi; done
+}
+those_asked_for "${models[@]}"
+models=("${kept[@]}")
+those_asked_for "${further[@]}"
+further=("${kept[@]}")
+((${#models[@]})) || die "--models $only: there is none of these"
 
 work=build/results/$(sha256sum "$mdprep" | cut -c1-12)$quick
 mkdir -p "$work" "$results"

@@ -43,7 +43,8 @@ Axis::Axis(Scale scale, AxisEnd end, const std::vector<double>& values) : scale_
 
 void Axis::span_linear(double highest, AxisEnd end) {
   if (!(highest > 0)) highest = 1;
-  const double step = round_up_to_tick(highest / kTicksWanted);
+  double step = round_up_to_tick(highest / kTicksWanted);
+  if (end == AxisEnd::kAtData) step = std::max(step, 1.0);
   const double count = std::ceil(highest / step - 1e-9);
   high_ = end == AxisEnd::kAtTick ? count * step : highest;
   for (double i = 0; i * step <= high_ * (1 + 1e-9); ++i) ticks_.push_back(i * step);

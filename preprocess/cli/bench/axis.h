@@ -11,7 +11,7 @@ enum class Scale { kLinear, kLog };
 /// Where a linear axis ends.
 enum class AxisEnd {
   kAtTick,  ///< at the first tick past the values
-  kAtData,  ///< at the largest value
+  kAtData,  ///< at the largest value; ticks are whole numbers: keys, clusters, per cent
 };
 
 /// Maps values to [0, 1]. A linear axis starts at 0; a logarithmic one spans the values and takes

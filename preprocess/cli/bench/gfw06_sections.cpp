@@ -60,6 +60,8 @@ std::vector<std::string> table1_row(const ModelBench& model, const TechniqueBenc
           theirs(&PaperRow::fps_ratio)};
 }
 
+constexpr double kLeastShare = 1e-3;
+
 /// Each in shares of its value with one cluster.
 Chart growth_chart(const ModelBench& model) {
   Chart chart;
@@ -74,7 +76,7 @@ Chart growth_chart(const ModelBench& model) {
   const std::vector<GrowthRow>& rows = model.bake->growth;
   const GrowthRow& first = rows.front();
   const auto add = [](ChartSeries& series, double x, double value, double unit) {
-    if (unit > 0) series.points.push_back({x, value / unit});
+    if (unit > 0) series.points.push_back({x, std::max(value / unit, kLeastShare)});
   };
   for (const GrowthRow& row : rows) {
     add(residual, row.clusters, row.residual_rms, first.residual_rms);
@@ -144,7 +146,7 @@ Section gfw06_figure7_section(const BenchRun& run) {
       "Residual motion, summed area of the fuzzy boxes, and the expected work of a ray (area, and "
       "a "
       "price for every cluster met), as the bake saw them at each stage; each relative to one "
-      "cluster.";
+      "cluster, and drawn at 0.001 where it is less.";
   for (const ModelBench* model : whole_models(run))
     if (model->bake && model->bake->growth.size() > 1)
       figure.charts.push_back(growth_chart(*model));

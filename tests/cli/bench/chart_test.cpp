@@ -23,6 +23,7 @@ TEST(Axis, ALinearOneStartsAtZeroAndHasRoundTicks) {
   const Axis keys(Scale::kLinear, AxisEnd::kAtData, {0, 29});
   EXPECT_THAT(keys.ticks(), ElementsAre(0, 10, 20));
   EXPECT_EQ(keys.place(29), 1);
+  EXPECT_THAT(Axis(Scale::kLinear, AxisEnd::kAtData, {1, 2}).ticks(), ElementsAre(0, 1, 2));
 }
 
 TEST(Axis, ALogarithmicOneHoldsAllPositiveValues) {
