@@ -1,5 +1,6 @@
 #include "preprocess/cli/bench/result_json.h"
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -22,9 +23,32 @@ double frames_per_second(double time_to_image_ms) {
 
 // --- writing ---
 
+/// Values that hold no others' lists stay on one line: a frame is a line, as in a table.
+void append_json(const Json& value, std::size_t depth, std::string& text) {
+  const bool is_flat = std::none_of(value.begin(), value.end(),
+                                    [](const Json& part) { return part.is_structured(); });
+  if (!value.is_structured() || is_flat) {
+    text += value.dump(-1, ' ', false, Json::error_handler_t::replace);
+    return;
+  }
+  const bool has_names = value.is_object();
+  char before = has_names ? '{' : '[';
+  for (const auto& [name, part] : value.items()) {
+    text += before;
+    text.append(1, '\n').append(depth + 1, ' ');
+    if (has_names) text.append(Json(name).dump()).append(": ");
+    append_json(part, depth + 1, text);
+    before = ',';
+  }
+  text.append(1, '\n').append(depth, ' ').append(1, has_names ? '}' : ']');
+}
+
+/// To 10 ns, as frames are measured.
+double rounded(double milliseconds) { return std::round(milliseconds * 1e5) / 1e5; }
+
 Json frame_json(const BenchFrame& frame) {
   return {{"key", frame.key},
-          {"time_to_image_ms", frame.time_to_image_ms()},
+          {"time_to_image_ms", rounded(frame.time_to_image_ms())},
           {"pose_ms", frame.pose_ms},
           {"update_ms", frame.update_ms},
           {"trace_ms", frame.trace_ms},
@@ -270,7 +294,9 @@ std::string results_json(const BenchResults& results) {
     for (std::size_t i = 1; i < results.runs.size(); ++i)
       report["further_runs"].push_back(run_json(results.runs[i]));
   }
-  return report.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+  std::string text;
+  append_json(report, 0, text);
+  return text + "\n";
 }
 
 BenchResults parse_results(std::string_view text, const std::string& origin) {

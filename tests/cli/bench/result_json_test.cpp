@@ -61,7 +61,7 @@ TEST(ResultJson, RefusesWhatIsDamagedAndSaysWhere) {
   refused("\"isa\": \"avx2\"", "\"isa\": 5", "a.json: isa is not text");
   refused("\"triangles\": 16000", "\"triangles\": -1", "models 0: triangles is not a whole number");
   refused("\"triangles\": 16000", "\"triangles\": 5000000000", "triangles is too large");
-  refused("\"update_ms\": 3.0", "\"update_ms\": -3.0", "techniques 0: frames 0: update_ms is not");
+  refused("\"update_ms\":3.0", "\"update_ms\":-3.0", "techniques 0: frames 0: update_ms is not");
   refused("\"models\": [", "\"models\": [], \"others\": [", "a.json has no models");
   expect_error(ErrorCode::kBadInput, "a.json",
                [] { parse_results(std::string(100000, '['), "a.json"); });
