@@ -17,14 +17,10 @@ constexpr std::size_t kParametersPerRow = 12;
 constexpr float kLeastScale = 0.02f;  // of the mean extent: keeps 16th powers inside float
 constexpr float kLeastNorm = 0.01f;   // below it a vertex stands still
 
-/// x^15 and x^16 by squaring.
+/// x^15 by squaring.
 float power15(float x) {
   const float x2 = x * x, x4 = x2 * x2, x8 = x4 * x4;
   return x8 * x4 * (x2 * x);
-}
-float power16(float x) {
-  const float x2 = x * x, x4 = x2 * x2, x8 = x4 * x4;
-  return x8 * x8;
 }
 
 /// The points of each row in coordinates in which they have unit scatter.
@@ -36,6 +32,11 @@ struct WhitePoints {
   explicit WhitePoints(const ClusterPoints& points) {
     for (std::vector<float>& a : axis) a.resize(points.row_count * points.stride);
     for (std::uint32_t row = 0; row < points.row_count; ++row) add_row(points, row);
+  }
+
+  PointRow row(const ClusterPoints& points, std::uint32_t row) const {
+    const std::size_t at = points.row_offset(row);
+    return {&axis[0][at], &axis[1][at], &axis[2][at]};
   }
 
  private:
@@ -191,6 +192,15 @@ class SmoothCost final : public ceres::FirstOrderFunction {
     return mean;
   }
 
+  ScaledCoordinate coordinate(const double* parameters, std::uint32_t row, int k,
+                              const std::vector<float>& per_scale) const {
+    const double* p = parameters + kParametersPerRow * row + 4 * k;
+    return {{static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2]),
+             static_cast<float>(p[3])},
+            middle_[k].data(),
+            per_scale.data()};
+  }
+
   /// (sum over rows of ((x - c) / h)^16)^(1/16) per vertex and axis.
   Norms vertex_norms(const double* parameters) const {
     Norms norms;
@@ -199,20 +209,10 @@ class SmoothCost final : public ceres::FirstOrderFunction {
       norms.axis[k].assign(n, 0.0f);
       std::vector<float> per_scale(n);
       for (std::size_t i = 0; i < n; ++i) per_scale[i] = 1 / scale_[k][i];
-      float* __restrict sum = norms.axis[k].data();
-      const float* __restrict c = middle_[k].data();
-      const float* __restrict h = per_scale.data();
-      for (std::uint32_t row = 0; row < points_.row_count; ++row) {
-        const double* p = parameters + kParametersPerRow * row + 4 * k;
-        const float m0 = static_cast<float>(p[0]), m1 = static_cast<float>(p[1]),
-                    m2 = static_cast<float>(p[2]), m3 = static_cast<float>(p[3]);
-        const std::size_t at = points_.row_offset(row);
-        const float* __restrict x = &white_.axis[0][at];
-        const float* __restrict y = &white_.axis[1][at];
-        const float* __restrict z = &white_.axis[2][at];
-        for (std::size_t i = 0; i < n; ++i)
-          sum[i] += power16((m0 * x[i] + m1 * y[i] + m2 * z[i] + (m3 - c[i])) * h[i]);
-      }
+      std::vector<float>& sum = norms.axis[k];
+      for (std::uint32_t row = 0; row < points_.row_count; ++row)
+        add_sixteenth_powers(coordinate(parameters, row, k, per_scale), white_.row(points_, row), n,
+                             sum.data());
       for (std::size_t i = 0; i < n; ++i)
         sum[i] = std::sqrt(std::sqrt(std::sqrt(std::sqrt(sum[i]))));
     }
@@ -267,34 +267,11 @@ class SmoothCost final : public ceres::FirstOrderFunction {
       strength[i] = norm[i] > kLeastNorm ? pull[i] / power15(norm[i]) : 0.0f;
     }
     for (std::uint32_t row = 0; row < points_.row_count; ++row) {
-      const double* p = parameters + kParametersPerRow * row + 4 * k;
-      const float m0 = static_cast<float>(p[0]), m1 = static_cast<float>(p[1]),
-                  m2 = static_cast<float>(p[2]), m3 = static_cast<float>(p[3]);
-      const std::size_t at = points_.row_offset(row);
-      const float* __restrict x = &white_.axis[0][at];
-      const float* __restrict y = &white_.axis[1][at];
-      const float* __restrict z = &white_.axis[2][at];
-      const float* __restrict c = middle_[k].data();
-      const float* __restrict h = per_scale.data();
-      const float* __restrict w = strength.data();
-      float sx[kSumLanes] = {}, sy[kSumLanes] = {}, sz[kSumLanes] = {}, s1[kSumLanes] = {};
-      for (std::size_t i = 0; i < n; i += kSumLanes)
-        for (std::size_t l = 0; l < kSumLanes; ++l) {
-          const std::size_t j = i + l;
-          const float u = (m0 * x[j] + m1 * y[j] + m2 * z[j] + (m3 - c[j])) * h[j];
-          const float g = w[j] * power15(u);
-          sx[l] += g * x[j];
-          sy[l] += g * y[j];
-          sz[l] += g * z[j];
-          s1[l] += g;
-        }
+      double sum[4] = {};
+      add_pulls(coordinate(parameters, row, k, per_scale), white_.row(points_, row),
+                strength.data(), n, sum);
       double* out = gradient + kParametersPerRow * row + 4 * k;
-      for (std::size_t l = 0; l < kSumLanes; ++l) {
-        out[0] += sx[l];
-        out[1] += sy[l];
-        out[2] += sz[l];
-        out[3] += s1[l];
-      }
+      for (int j = 0; j < 4; ++j) out[j] += sum[j];
     }
   }
 

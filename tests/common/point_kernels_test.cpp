@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <limits>
 #include <random>
@@ -73,12 +74,20 @@ Results run_all() {
     double cross[3][3];
     cross_moments(p.row(), q.row(), p.weights.data(), n, cross);
     for (const auto& row : cross) results.sums.insert(results.sums.end(), row, row + 3);
+    double pulls[4] = {};
+    add_pulls({{0.3f, -0.2f, 0.1f, 0.5f}, q.x.data(), q.y.data()}, p.row(), p.weights.data(), n,
+              pulls);
+    results.sums.insert(results.sums.end(), pulls, pulls + 4);
   }
   for (const std::size_t n : kAnyCounts) {
     const Points p(n, 3), q(n, 4);
     std::vector<float> distances(n, 0.25f);
     add_squared_distances(some_map(0.4f), p.row(), q.row(), n, distances.data());
     results.distances.insert(results.distances.end(), distances.begin(), distances.end());
+    const ScaledCoordinate u{{0.3f, -0.2f, 0.1f, 0.5f}, q.x.data(), q.y.data()};
+    std::vector<float> powers(n, 0.5f);
+    add_sixteenth_powers(u, p.row(), n, powers.data());
+    results.distances.insert(results.distances.end(), powers.begin(), powers.end());
     Boxes boxes(n);
     for (const float turn : {0.0f, -0.6f, 1.7f})
       extend_boxes(some_map(turn), p.row(), n, boxes.row());
@@ -145,6 +154,27 @@ TEST_P(PointKernels, DistancesAreAddedToWhatIsThere) {
       EXPECT_NEAR(distances[i], 10 + dot(d, d), 1e-4f * (10 + dot(d, d)));
     }
   }
+}
+
+TEST_P(PointKernels, PowersAndPullsAreThoseOfTheFormula) {
+  constexpr std::size_t kCount = 40;
+  const Points p(kCount, 10), q(kCount, 11);
+  const std::vector<float> reciprocals(kCount, 0.8f);
+  const ScaledCoordinate u{{0.3f, -0.2f, 0.1f, 0.5f}, q.x.data(), reciprocals.data()};
+  std::vector<float> powers(kCount, 0.0f);
+  add_sixteenth_powers(u, p.row(), kCount, powers.data());
+  double pulls[4] = {}, expected[4] = {}, size = 0;
+  add_pulls(u, p.row(), p.weights.data(), kCount, pulls);
+  for (std::size_t i = 0; i < kCount; ++i) {
+    const double value =
+        0.8 * (0.3 * p.at(0, i) - 0.2 * p.at(1, i) + 0.1 * p.at(2, i) + 0.5 - q.at(0, i));
+    EXPECT_NEAR(powers[i], std::pow(value, 16), 1e-4 * std::pow(value, 16) + 1e-9);
+    const double pull = static_cast<double>(p.weights[i]) * std::pow(value, 15);
+    for (int j = 0; j < 3; ++j) expected[j] += pull * p.at(j, i);
+    expected[3] += pull;
+    size += 3 * std::abs(pull);
+  }
+  for (int j = 0; j < 4; ++j) EXPECT_NEAR(pulls[j], expected[j], 1e-4 * size);
 }
 
 TEST_P(PointKernels, GiveTheBitsOfTheWeakestInstructionSet) {

@@ -167,6 +167,55 @@ void AddDistances(const Affine3f& map, const PointRow& points, const PointRow& t
     }
 }
 
+using LaneTag = hn::CappedTag<float, kSumLanes>;
+using LaneVec = hn::Vec<LaneTag>;
+
+/// u of as many points as `d` has lanes, from point i on.
+template <class D>
+HWY_INLINE hn::Vec<D> scaled(D d, const ScaledCoordinate& u, const PointRow& points,
+                             std::size_t i) {
+  const auto x = hn::Mul(hn::Set(d, u.map[0]), hn::LoadU(d, points.x + i));
+  const auto y = hn::Mul(hn::Set(d, u.map[1]), hn::LoadU(d, points.y + i));
+  const auto z = hn::Mul(hn::Set(d, u.map[2]), hn::LoadU(d, points.z + i));
+  const auto shift = hn::Sub(hn::Set(d, u.map[3]), hn::LoadU(d, u.middles + i));
+  return hn::Mul(hn::Add(hn::Add(hn::Add(x, y), z), shift), hn::LoadU(d, u.reciprocals + i));
+}
+
+void AddPowers(const ScaledCoordinate& u, const PointRow& points, std::size_t n, float* sum) {
+  const auto add_from = [&](auto d, std::size_t i) {
+    const auto u1 = scaled(d, u, points, i);
+    const auto u2 = hn::Mul(u1, u1), u4 = hn::Mul(u2, u2), u8 = hn::Mul(u4, u4);
+    hn::StoreU(hn::Add(hn::LoadU(d, sum + i), hn::Mul(u8, u8)), d, sum + i);
+  };
+  const FloatTag d;
+  std::size_t i = 0;
+  for (; i + hn::Lanes(d) <= n; i += hn::Lanes(d)) add_from(d, i);
+  for (; i < n; ++i) add_from(hn::CappedTag<float, 1>(), i);
+}
+
+void AddPulls(const ScaledCoordinate& u, const PointRow& points, const float* weights,
+              std::size_t n, double* sum) {
+  const LaneTag d;
+  float lanes[4][kSumLanes];
+  for (std::size_t part = 0; part < kSumLanes; part += hn::Lanes(d)) {
+    LaneVec x = hn::Zero(d), y = x, z = x, one = x;
+    for (std::size_t i = part; i < n; i += kSumLanes) {
+      const LaneVec u1 = scaled(d, u, points, i);
+      const LaneVec u2 = hn::Mul(u1, u1), u4 = hn::Mul(u2, u2), u8 = hn::Mul(u4, u4);
+      const LaneVec u15 = hn::Mul(hn::Mul(u8, u4), hn::Mul(u2, u1));
+      const LaneVec pull = hn::Mul(hn::LoadU(d, weights + i), u15);
+      x = hn::Add(x, hn::Mul(pull, hn::LoadU(d, points.x + i)));
+      y = hn::Add(y, hn::Mul(pull, hn::LoadU(d, points.y + i)));
+      z = hn::Add(z, hn::Mul(pull, hn::LoadU(d, points.z + i)));
+      one = hn::Add(one, pull);
+    }
+    const LaneVec sums[4] = {x, y, z, one};
+    for (int s = 0; s < 4; ++s) hn::StoreU(sums[s], d, &lanes[s][part]);
+  }
+  for (int s = 0; s < 4; ++s)
+    for (std::size_t l = 0; l < kSumLanes; ++l) sum[s] += static_cast<double>(lanes[s][l]);
+}
+
 }  // namespace HWY_NAMESPACE
 }  // namespace mdk
 HWY_AFTER_NAMESPACE();
@@ -178,6 +227,8 @@ HWY_EXPORT(Second);
 HWY_EXPORT(Cross);
 HWY_EXPORT(Extend);
 HWY_EXPORT(AddDistances);
+HWY_EXPORT(AddPowers);
+HWY_EXPORT(AddPulls);
 
 SecondMoments second_moments(const PointRow& points, const float* weights, std::size_t n) {
   SecondMoments moments;
@@ -197,6 +248,16 @@ void extend_boxes(const Affine3f& map, const PointRow& points, std::size_t n, co
 void add_squared_distances(const Affine3f& map, const PointRow& points, const PointRow& targets,
                            std::size_t n, float* out) {
   HWY_DYNAMIC_DISPATCH(AddDistances)(map, points, targets, n, out);
+}
+
+void add_sixteenth_powers(const ScaledCoordinate& u, const PointRow& points, std::size_t n,
+                          float* sum) {
+  HWY_DYNAMIC_DISPATCH(AddPowers)(u, points, n, sum);
+}
+
+void add_pulls(const ScaledCoordinate& u, const PointRow& points, const float* weights,
+               std::size_t n, double (&sum)[4]) {
+  HWY_DYNAMIC_DISPATCH(AddPulls)(u, points, weights, n, sum);
 }
 
 }  // namespace mdk

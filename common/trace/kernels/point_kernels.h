@@ -42,4 +42,19 @@ void extend_boxes(const Affine3f& map, const PointRow& points, std::size_t n, co
 void add_squared_distances(const Affine3f& map, const PointRow& points, const PointRow& targets,
                            std::size_t n, float* out);
 
+/// One coordinate of mapped points as a multiple of how far each reaches from a middle:
+/// u_i = (map (x, y, z, 1) - middle_i) reciprocal_i.
+struct ScaledCoordinate {
+  float map[4];
+  const float *middles, *reciprocals;
+};
+
+/// sum[i] += u_i^16, for all i below n. Any n.
+void add_sixteenth_powers(const ScaledCoordinate& u, const PointRow& points, std::size_t n,
+                          float* sum);
+
+/// sum[j] += the sum over points of w u^15 (x, y, z, 1)_j; `n` is a multiple of kSumLanes.
+void add_pulls(const ScaledCoordinate& u, const PointRow& points, const float* weights,
+               std::size_t n, double (&sum)[4]);
+
 }  // namespace mdk
