@@ -8,7 +8,13 @@ namespace mdk {
 namespace {
 
 constexpr double kTicksWanted = 5;
-constexpr double kFewDecades = 1.7;  // so few get ticks at 2 and 5, too
+
+/// Where ticks stand within each decade: the fewer decades, the more.
+std::vector<double> tick_steps(double decades) {
+  if (decades < 0.9) return {1, 1.5, 2, 3, 5, 7};
+  if (decades < 1.7) return {1, 2, 5};
+  return {1};
+}
 
 /// The least of 1, 2, 5, 10, 20, ... times a power of ten that is not below `value`.
 double round_up_to_tick(double value) {
@@ -57,12 +63,10 @@ void Axis::span_log(double lowest, double highest) {
   to += margin;
   low_ = from;
   high_ = to;
-  const bool fine = to - from < kFewDecades;
   for (double decade = std::floor(from); decade <= to; ++decade)
-    for (const double step : {1.0, 2.0, 5.0}) {
+    for (const double step : tick_steps(to - from)) {
       const double place = decade + std::log10(step);
-      if ((step == 1 || fine) && place >= from && place <= to)
-        ticks_.push_back(std::pow(10.0, decade) * step);
+      if (place >= from && place <= to) ticks_.push_back(std::pow(10.0, decade) * step);
     }
 }
 

@@ -35,6 +35,7 @@ TEST(Axis, ALogarithmicOneHoldsAllPositiveValues) {
   EXPECT_NEAR(axis.place(1) - axis.place(0.1), axis.place(10) - axis.place(1), 1e-9);
   const Axis narrow(Scale::kLog, AxisEnd::kAtTick, {3, 40});
   EXPECT_THAT(narrow.ticks(), ElementsAre(5, 10, 20));
+  EXPECT_THAT(Axis(Scale::kLog, AxisEnd::kAtTick, {11, 45}).ticks(), ElementsAre(15, 20, 30));
 }
 
 TEST(Axis, NothingOrOneValueStillMakesAnAxis) {
