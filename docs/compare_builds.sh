@@ -4,11 +4,12 @@
 #
 #   docs/compare_builds.sh OLD_MDPREP NEW_MDPREP FILE.mdk… [-- OPTIONS OF mdprep bench…]
 #
+# 1024x1024, eight keys; the options can be --threads, --isa, --techniques, --shading and --camera.
 # For instance, in a branch: cp build/release/bin/mdprep /tmp/old; change; ./run build; then
 #   docs/compare_builds.sh /tmp/old build/release/bin/mdprep out/hand.mdk -- --threads 1
 set -euo pipefail
 
-usage() { sed -n '2,9s/^# \{0,1\}//p' "$0" >&2; exit 2; }
+usage() { sed -n '2,10s/^# \{0,1\}//p' "$0" >&2; exit 2; }
 (($# >= 3)) || usage
 declare -A program=([old]=$1 [new]=$2)
 shift 2
