@@ -9,7 +9,7 @@ samples=build/release/samples
 make_source() {
   local name=$1 made=()
   case $name in
-    hand | ball) return ;;
+    hand | ball | cally-* | skeleton-* | paladin-*) return ;;
     *-split[1-6]) made=("$samples/$name.glb") ;;
     ben) made=("$samples/$name.glb") ;;
     *) made=("$samples/$name.obj" "$samples/$name.pc2") ;;
