@@ -31,7 +31,8 @@ struct FrameStats {
   double prebuild_ms = 0;  ///< work a technique does ahead of time; not part of the frame
   std::uint64_t rays = 0;
   std::uint64_t hits = 0;
-  TraceCounters counters;  ///< all zero unless counting was asked for
+  std::uint64_t light_rays = 0;  ///< to lights and sky; their time is part of shade_ms
+  TraceCounters counters;        ///< all zero unless counting was asked for
 
   double time_to_image_ms() const { return pose_ms + update_ms + trace_ms + shade_ms; }
 };

@@ -2,6 +2,7 @@
 
 #include <tbb/enumerable_thread_specific.h>
 
+#include <cmath>
 #include <map>
 #include <string>
 
@@ -12,11 +13,35 @@
 namespace mdk {
 namespace {
 
-void check_size(std::uint32_t width, std::uint32_t height) {
-  if (width >= 1 && height >= 1 && width <= kMaxImageSide && height <= kMaxImageSide) return;
-  throw Error(ErrorCode::kUsage,
-              "an image of " + std::to_string(width) + "x" + std::to_string(height) +
-                  " pixels cannot be: sides go from 1 to " + std::to_string(kMaxImageSide));
+void check_request(const FrameRequest& request) {
+  const auto refuse = [](bool refused, const std::string& sentence) {
+    if (refused) throw Error(ErrorCode::kUsage, sentence);
+  };
+  const std::uint32_t width = request.width, height = request.height;
+  refuse(width < 1 || height < 1 || width > kMaxImageSide || height > kMaxImageSide,
+         "an image of " + std::to_string(width) + "x" + std::to_string(height) +
+             " pixels cannot be: sides go from 1 to " + std::to_string(kMaxImageSide));
+  refuse(request.samples < 1 || request.samples > kMostSamples,
+         std::to_string(request.samples) + " samples per pixel cannot be: they go from 1 to " +
+             std::to_string(kMostSamples));
+  refuse(request.occlusion_rays > kMostOcclusionRays,
+         std::to_string(request.occlusion_rays) + " occlusion rays cannot be: they go from 0 to " +
+             std::to_string(kMostOcclusionRays));
+  refuse(!request.shutter.empty() && request.shutter.size() != request.samples,
+         "a shutter needs a moment for each sample");
+}
+
+/// Sample `i` of every pixel: the centre first, then spread evenly over the pixel (Roberts 2018).
+PinholeRays sample_rays(const FrameRequest& request, std::uint32_t i) {
+  PinholeRays rays = make_pinhole_rays(request.camera, request.width, request.height);
+  if (i == 0) return rays;
+  const auto offset = [i](double step) {
+    const double place = 0.5 + i * step;
+    return static_cast<float>(place - std::floor(place) - 0.5);
+  };
+  rays.corner =
+      rays.corner + rays.du * offset(0.7548776662466927) + rays.dv * offset(0.5698402909980532);
+  return rays;
 }
 
 /// What a thread keeps between tiles.
@@ -39,8 +64,28 @@ struct Renderer::State {
 
   tbb::enumerable_thread_specific<Worker> workers;
   HitBuffer hits;
-  std::vector<std::uint32_t> pixels;
+  std::vector<TraceCounters> tile_work;
+  Film film;
+  HeatScale heat;
   FrameStats stats;
+
+  void pose(const FrameRequest& request, std::uint32_t i);
+  void trace(const FrameRequest& request, const PinholeRays& rays);
+  void shade(const FrameRequest& request, const PinholeRays& rays, std::uint32_t sample);
+
+  /// Traces all tiles; `counters_of` tells where a tile's work is counted, if anywhere.
+  template <class CountersOf>
+  void trace_tiles(const PinholeRays& rays, const CountersOf& counters_of) {
+    const PixelFromWorld pixel_from_world = make_pixel_from_world(rays);
+    parallel_chunks(hits.tile_count(), 8, [&](std::size_t begin, std::size_t end) {
+      Worker& worker = workers.local();
+      for (std::size_t i = begin; i < end; ++i) {
+        const TileRays tile{&rays, &pixel_from_world, hits.tile_left(i), hits.tile_top(i)};
+        hits.tile(i).clear();
+        technique->trace(tile, hits.tile(i), worker.scratch, counters_of(i, worker));
+      }
+    });
+  }
 };
 
 Renderer::Renderer(const Model& model, std::string_view technique_id)
@@ -59,58 +104,87 @@ void Renderer::set_technique(std::string_view id) {
 
 std::string_view Renderer::technique_id() const { return state_->present->id; }
 
-const FrameStats& Renderer::trace(const FrameRequest& request) {
-  check_size(request.width, request.height);
-  State& s = *state_;
-  const PinholeRays rays = make_pinhole_rays(request.camera, request.width, request.height);
-  s.stats = {};
-  s.stats.rays = static_cast<std::uint64_t>(request.width) * request.height;
-
+/// The structure at the moment of sample `i`.
+void Renderer::State::pose(const FrameRequest& request, std::uint32_t i) {
   Stopwatch watch;
   if (request.pose != nullptr) {
-    s.mesh.set_pose(*request.pose);
+    mesh.set_pose(*request.pose);
   } else {
-    s.mesh.set_time(request.at);
+    mesh.set_time(request.shutter.empty() ? request.at : request.shutter[i]);
   }
-  s.stats.pose_ms = watch.lap() * 1e3;
-  s.technique->prebuild(s.mesh);
-  s.stats.prebuild_ms = watch.lap() * 1e3;
-  s.technique->update(s.mesh);
-  s.technique->set_view(rays);
-  s.stats.update_ms = watch.lap() * 1e3;
+  stats.pose_ms += watch.lap() * 1e3;
+  technique->prebuild(mesh);
+  stats.prebuild_ms += watch.lap() * 1e3;
+  technique->update(mesh);
+  stats.update_ms += watch.lap() * 1e3;
+}
 
-  s.hits.resize(request.width, request.height);
-  const PixelFromWorld pixel_from_world = make_pixel_from_world(rays);
+void Renderer::State::trace(const FrameRequest& request, const PinholeRays& rays) {
+  Stopwatch watch;
+  technique->set_view(rays);
+  stats.update_ms += watch.lap() * 1e3;
+  hits.resize(request.width, request.height);
+  for (Worker& worker : workers) worker.counters = {};
   const bool counting = request.counting == Counting::kOn;
-  for (Worker& worker : s.workers) worker.counters = {};
-  parallel_chunks(s.hits.tile_count(), 8, [&](std::size_t begin, std::size_t end) {
-    Worker& worker = s.workers.local();
-    for (std::size_t i = begin; i < end; ++i) {
-      const TileRays tile{&rays, &pixel_from_world, s.hits.tile_left(i), s.hits.tile_top(i)};
-      s.hits.tile(i).clear();
-      s.technique->trace(tile, s.hits.tile(i), worker.scratch,
-                         counting ? &worker.counters : nullptr);
-    }
-  });
-  s.stats.trace_ms = watch.lap() * 1e3;
-  for (const Worker& worker : s.workers) s.stats.counters += worker.counters;
-  s.stats.hits = count_hits(s.hits);
-  return s.stats;
+  trace_tiles(rays,
+              [&](std::size_t, Worker& worker) { return counting ? &worker.counters : nullptr; });
+  stats.trace_ms += watch.lap() * 1e3;
+  for (const Worker& worker : workers) stats.counters += worker.counters;
+  stats.rays += static_cast<std::uint64_t>(request.width) * request.height;
+  stats.hits += count_hits(hits);
+}
+
+void Renderer::State::shade(const FrameRequest& request, const PinholeRays& rays,
+                            std::uint32_t sample) {
+  const Stopwatch watch;
+  ShadingInput input{mesh, rays, hits, nullptr, {}};
+  Lighting lighting(*technique, rays, model.bounds);
+  if (request.shading == ShadingMode::kLit) {
+    technique->prepare_occlusion();
+    lighting.choose_directions(request.occlusion_rays, sample);
+    input.lighting = &lighting;
+  }
+  tile_work.clear();
+  if (shows_work(request.shading)) {
+    tile_work.resize(hits.tile_count());
+    trace_tiles(rays, [&](std::size_t tile, Worker&) { return &tile_work[tile]; });
+    input.tile_work = tile_work;
+  }
+  const ShadingReport report = shader.shade(input, request.shading, film);
+  stats.light_rays += report.rays;
+  heat = report.heat;
+  stats.shade_ms += watch.milliseconds();
+}
+
+const FrameStats& Renderer::trace(const FrameRequest& request) {
+  check_request(request);
+  state_->stats = {};
+  state_->pose(request, 0);
+  state_->trace(request, sample_rays(request, 0));
+  return state_->stats;
 }
 
 const FrameStats& Renderer::render(const FrameRequest& request) {
-  trace(request);
+  check_request(request);
   State& s = *state_;
-  const PinholeRays rays = make_pinhole_rays(request.camera, request.width, request.height);
-  s.pixels.resize(static_cast<std::size_t>(request.width) * request.height);
+  s.stats = {};
+  s.film.begin(request.width, request.height, request.samples);
+  for (std::uint32_t i = 0; i < request.samples; ++i) {
+    if (i == 0 || !request.shutter.empty()) s.pose(request, i);
+    const PinholeRays rays = sample_rays(request, i);
+    s.trace(request, rays);
+    s.shade(request, rays, i);
+  }
   const Stopwatch watch;
-  s.shader.shade(s.mesh, rays, s.hits, request.shading, s.pixels);
-  s.stats.shade_ms = watch.milliseconds();
+  s.film.develop();
+  s.stats.shade_ms += watch.milliseconds();
   return s.stats;
 }
 
-std::span<const std::uint32_t> Renderer::pixels() const { return state_->pixels; }
+std::span<const std::uint32_t> Renderer::pixels() const { return state_->film.pixels(); }
 const HitBuffer& Renderer::hits() const { return state_->hits; }
+const HeatScale& Renderer::heat_scale() const { return state_->heat; }
+std::span<const TraceCounters> Renderer::tile_work() const { return state_->tile_work; }
 const FrameStats& Renderer::stats() const { return state_->stats; }
 std::size_t Renderer::structure_bytes() const { return state_->technique->structure_bytes(); }
 std::string Renderer::technique_note() const { return state_->technique->note(); }

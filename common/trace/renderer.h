@@ -24,8 +24,11 @@ struct FrameRequest {
   Camera camera;
   std::uint32_t width = 512, height = 512;  ///< 1 to kMaxImageSide each
   ShadingMode shading = ShadingMode::kDiffuse;
-  Counting counting = Counting::kOff;  ///< counts cost time: never time a counting frame
-  const SkeletonPose* pose = nullptr;  ///< where there is one, it counts instead of `at`
+  std::uint32_t samples = 1;  ///< per pixel, 1 to kMostSamples; 1: through the pixel's centre
+  std::uint32_t occlusion_rays = kOcclusionRays;  ///< per sample of kLit, 0 to kMostOcclusionRays
+  std::span<const KeyInterval> shutter;           ///< the moment of each sample; empty: all at `at`
+  Counting counting = Counting::kOff;             ///< counts cost time: never time a counting frame
+  const SkeletonPose* pose = nullptr;             ///< where there is one, it counts instead of `at`
 };
 
 /// Not for use from several threads at once; uses many inside. The model must outlive it.
@@ -41,16 +44,21 @@ class Renderer {
   void set_technique(std::string_view id);
   std::string_view technique_id() const;
 
-  /// Pose, update, trace and shade; results stay valid until the next call. Throws Error (kUsage)
-  /// for a size or camera that cannot be.
+  /// Pose, update, trace and shade, for each sample; results stay valid until the next call. Throws
+  /// Error (kUsage) for a size, camera or number that cannot be.
   const FrameStats& render(const FrameRequest& request);
 
-  /// As render(), without shading.
+  /// The first sample of render(), without shading.
   const FrameStats& trace(const FrameRequest& request);
 
   /// sRGB RGBA, width * height, row 0 on top.
   std::span<const std::uint32_t> pixels() const;
+  /// Of the last sample.
   const HitBuffer& hits() const;
+  /// What the colours of a heat map mean, for the last sample.
+  const HeatScale& heat_scale() const;
+  /// What each tile of hits() cost, where the shading shows it.
+  std::span<const TraceCounters> tile_work() const;
   const FrameStats& stats() const;
   std::size_t structure_bytes() const;
   /// Technique::note() of the present technique.

@@ -1,5 +1,8 @@
 #include "common/trace/shading.h"
 
+#include <tbb/enumerable_thread_specific.h>
+
+#include <atomic>
 #include <cmath>
 #include <string>
 
@@ -14,13 +17,15 @@ namespace {
 constexpr Vec3f kBackgroundTop{0.060f, 0.068f, 0.082f};
 constexpr Vec3f kBackgroundBottom{0.016f, 0.018f, 0.022f};
 constexpr float kAmbient = 0.12f;
+constexpr float kAmbientOfHeat = 0.7f;  ///< shape shows, colours stay those of the scale
+constexpr float kUnhitWork = 0.45f;     ///< how bright work is where nothing was hit
 
 /// One colour per row of the picture, darker downwards.
-std::vector<std::uint32_t> background_rows(std::uint32_t height) {
-  std::vector<std::uint32_t> rows(height);
+std::vector<Vec3f> background_rows(std::uint32_t height) {
+  std::vector<Vec3f> rows(height);
   for (std::uint32_t y = 0; y < height; ++y) {
     const float down = (static_cast<float>(y) + 0.5f) / static_cast<float>(height);
-    rows[y] = pack_srgb(kBackgroundTop * (1 - down) + kBackgroundBottom * down);
+    rows[y] = kBackgroundTop * (1 - down) + kBackgroundBottom * down;
   }
   return rows;
 }
@@ -31,7 +36,11 @@ std::span<const ShadingInfo> shading_table() {
   static constexpr ShadingInfo kTable[] = {
       {ShadingMode::kDiffuse, "diffuse", "Diffuse"},
       {ShadingMode::kNormals, "normals", "Normals"},
+      {ShadingMode::kLit, "lit", "Lit"},
       {ShadingMode::kClusters, "clusters", "Clusters"},
+      {ShadingMode::kBoxes, "boxes", "Boxes"},
+      {ShadingMode::kTests, "tests", "Tests"},
+      {ShadingMode::kResidual, "residual", "Residual"},
   };
   return kTable;
 }
@@ -57,22 +66,22 @@ Vec3f cluster_color(std::uint32_t cluster) {
   return {channel(5), channel(3), channel(1)};
 }
 
-/// One tile on its way from hits to pixels.
+/// One tile on its way from hits to the film.
 struct Shader::Tile {
-  const TileHits* hits = nullptr;
-  std::uint32_t left = 0, top = 0;      ///< in the image
-  std::uint32_t columns = 0, rows = 0;  ///< inside the image
-  std::uint32_t image_width = 0;
+  const TileHits* hits;
+  std::size_t number;
+  std::uint32_t left, top;      ///< in the image
+  std::uint32_t columns, rows;  ///< inside the image
+  bool shows_misses = false;    ///< misses have a colour of their own on the surface
   SurfaceTile surface{};
-  alignas(64) float light[kTilePixels] = {};  ///< what part of the colour is seen
 
   Tile(const HitBuffer& image, std::size_t i)
       : hits(&image.tile(i)),
+        number(i),
         left(image.tile_left(i)),
         top(image.tile_top(i)),
         columns(std::min(kTileSide, image.width() - left)),
-        rows(std::min(kTileSide, image.height() - top)),
-        image_width(image.width()) {}
+        rows(std::min(kTileSide, image.height() - top)) {}
 };
 
 Shader::Shader(const Model& model)
@@ -88,8 +97,8 @@ Shader::Shader(const Model& model)
   for (const Material& material : model.materials) {
     const float* color = material.base_color;
     material_colors_.push_back({color[0], color[1], color[2]});
-    is_unlit_.push_back((material.flags & kMaterialUnlit) != 0);
-    has_unlit_ = has_unlit_ || is_unlit_.back() != 0;
+    is_unlit_material_.push_back((material.flags & kMaterialUnlit) != 0);
+    has_unlit_ = has_unlit_ || is_unlit_material_.back() != 0;
     has_textures_ = has_textures_ || material.texture != kNoTexture;
   }
   has_textures_ = has_textures_ && !model.corner_texcoords.empty();
@@ -108,6 +117,9 @@ ShadedMesh Shader::shaded_mesh(const PosedMesh& mesh, ShadingMode mode) const {
   if (mode == ShadingMode::kClusters) {
     shaded.palette = cluster_colors_.data();
     shaded.palette_index = triangle_cluster_.data();
+  } else if (mode == ShadingMode::kResidual) {
+    shaded.palette = heat_.palette().data();
+    shaded.palette_index = heat_.triangle_colors().data();
   } else {
     shaded.palette = material_colors_.data();
     shaded.palette_index = model_->triangle_materials.data();
@@ -135,73 +147,161 @@ void Shader::apply_textures(Tile& tile) const {
   }
 }
 
-void Shader::light_tile(ShadingMode mode, Tile& tile) const {
+HeatScale Shader::prepare_heat(const ShadingInput& input, ShadingMode mode) {
+  switch (mode) {
+    case ShadingMode::kBoxes:
+      return heat_.color_tiles(input.tile_work, &TraceCounters::node_visits, "visits per ray");
+    case ShadingMode::kTests:
+      return heat_.color_tiles(input.tile_work, &TraceCounters::triangle_tests, "tests per ray");
+    case ShadingMode::kResidual:
+      return heat_.color_triangles(input.mesh);
+    default:
+      return {};
+  }
+}
+
+bool Shader::is_unlit(std::uint32_t triangle) const {
+  return triangle != kNoHit && is_unlit_material_[model_->triangle_materials[triangle]] != 0;
+}
+
+void Shader::show_normals(Tile& tile) const {
   SurfaceTile& s = tile.surface;
+  for (std::uint32_t i = 0; i < tile.rows * kTileSide; ++i) {
+    s.red[i] = s.normal_x[i] * 0.5f + 0.5f;
+    s.green[i] = s.normal_y[i] * 0.5f + 0.5f;
+    s.blue[i] = s.normal_z[i] * 0.5f + 0.5f;
+  }
+}
+
+void Shader::show_work(Tile& tile) const {
+  SurfaceTile& s = tile.surface;
+  const Vec3f& color = heat_.tile_color(tile.number);
+  for (std::uint32_t i = 0; i < kTilePixels; ++i) {
+    const bool is_hit = tile.hits->triangle[i] != kNoHit;
+    const float light = is_hit ? kAmbientOfHeat + (1 - kAmbientOfHeat) * s.facing[i] : kUnhitWork;
+    s.red[i] = color.x * light;
+    s.green[i] = color.y * light;
+    s.blue[i] = color.z * light;
+  }
+  tile.shows_misses = true;
+}
+
+/// A headlight; `least` is what light is left where the surface is seen edge-on.
+void Shader::light_from_eye(ShadingMode mode, float least, Tile& tile) const {
+  SurfaceTile& s = tile.surface;
+  alignas(64) float light[kTilePixels];
   const std::uint32_t pixels = tile.rows * kTileSide;
-  for (std::uint32_t i = 0; i < pixels; ++i)
-    tile.light[i] = kAmbient + (1 - kAmbient) * s.facing[i];
-  if (mode == ShadingMode::kNormals) {
-    for (std::uint32_t i = 0; i < pixels; ++i) {
-      s.red[i] = s.normal_x[i] * 0.5f + 0.5f;
-      s.green[i] = s.normal_y[i] * 0.5f + 0.5f;
-      s.blue[i] = s.normal_z[i] * 0.5f + 0.5f;
-      tile.light[i] = 1;
-    }
-  }
-  if (mode != ShadingMode::kDiffuse) return;
-  if (has_textures_) apply_textures(tile);
-  if (!has_unlit_) return;
+  for (std::uint32_t i = 0; i < pixels; ++i) light[i] = least + (1 - least) * s.facing[i];
+  const bool some_plain = mode == ShadingMode::kDiffuse && has_unlit_;
+  for (std::uint32_t i = 0; some_plain && i < pixels; ++i)
+    if (is_unlit(tile.hits->triangle[i])) light[i] = 1;
   for (std::uint32_t i = 0; i < pixels; ++i) {
-    const std::uint32_t triangle = tile.hits->triangle[i];
-    if (triangle != kNoHit && is_unlit_[model_->triangle_materials[triangle]]) tile.light[i] = 1;
+    s.red[i] *= light[i];
+    s.green[i] *= light[i];
+    s.blue[i] *= light[i];
   }
 }
 
-void Shader::write_pixels(const Tile& tile, std::span<std::uint32_t> pixels) const {
-  const SurfaceTile& s = tile.surface;
-  const auto& srgb = srgb_table();
-  alignas(64) std::int32_t red[kTileSide], green[kTileSide], blue[kTileSide];
+/// Returns how many rays were traced.
+std::uint64_t Shader::light_from_lamps(const Lighting& lighting, const ShadedMesh& mesh,
+                                       Lighting::Scratch& scratch, Tile& tile) const {
+  if (has_textures_) apply_textures(tile);
+  SurfaceTile& s = tile.surface;
+  LightTile light;
+  const std::uint64_t rays =
+      lighting.light_tile({mesh, *tile.hits, s, tile.columns, tile.rows}, scratch, light);
+  for (std::uint32_t i = 0; i < tile.rows * kTileSide; ++i) {
+    if (has_unlit_ && is_unlit(tile.hits->triangle[i])) continue;
+    s.red[i] *= light.red[i];
+    s.green[i] *= light.green[i];
+    s.blue[i] *= light.blue[i];
+  }
+  return rays;
+}
+
+void Shader::put_tile(Tile& tile, Film& film) const {
+  SurfaceTile& s = tile.surface;
   for (std::uint32_t row = 0; row < tile.rows; ++row) {
-    const std::uint32_t first = row * kTileSide;
-    for (std::uint32_t i = 0; i < kTileSide; ++i) {
-      red[i] = srgb_step(s.red[first + i] * tile.light[first + i]);
-      green[i] = srgb_step(s.green[first + i] * tile.light[first + i]);
-      blue[i] = srgb_step(s.blue[first + i] * tile.light[first + i]);
+    const std::uint32_t first = row * kTileSide, y = tile.top + row;
+    const Vec3f& background = background_[y];
+    for (std::uint32_t i = first; !tile.shows_misses && i < first + kTileSide; ++i) {
+      const bool is_hit = tile.hits->triangle[i] != kNoHit;
+      s.red[i] = is_hit ? s.red[i] : background.x;
+      s.green[i] = is_hit ? s.green[i] : background.y;
+      s.blue[i] = is_hit ? s.blue[i] : background.z;
     }
-    const std::uint32_t y = tile.top + row;
-    std::uint32_t* out = pixels.data() + std::size_t{y} * tile.image_width + tile.left;
-    for (std::uint32_t i = 0; i < tile.columns; ++i) {
-      const auto byte = [&](std::int32_t step) -> std::uint32_t {
-        return srgb[static_cast<std::size_t>(step)];
-      };
-      out[i] = tile.hits->triangle[first + i] == kNoHit
-                   ? background_[y]
-                   : byte(red[i]) | byte(green[i]) << 8 | byte(blue[i]) << 16 | 0xff000000u;
-    }
+    film.put_row(tile.left, y, tile.columns, s.red + first, s.green + first, s.blue + first);
   }
 }
 
-void Shader::shade(const PosedMesh& mesh, const PinholeRays& rays, const HitBuffer& hits,
-                   ShadingMode mode, std::span<std::uint32_t> pixels) {
+/// Every mode but kLit.
+void Shader::show_tile(ShadingMode mode, Tile& tile) const {
+  switch (mode) {
+    case ShadingMode::kNormals:
+      return show_normals(tile);
+    case ShadingMode::kBoxes:
+    case ShadingMode::kTests:
+      return show_work(tile);
+    case ShadingMode::kResidual:
+      return light_from_eye(mode, kAmbientOfHeat, tile);
+    case ShadingMode::kDiffuse:
+      if (has_textures_) apply_textures(tile);
+      return light_from_eye(mode, kAmbient, tile);
+    default:
+      return light_from_eye(mode, kAmbient, tile);
+  }
+}
+
+/// Background where tiles of a row of tiles have no hits at all.
+void Shader::put_background(const HitBuffer& hits, std::size_t first, std::size_t last,
+                            Film& film) const {
+  while (first < last) {
+    if (hits.tile(first).written) {
+      ++first;
+      continue;
+    }
+    const std::uint32_t left = hits.tile_left(first), top = hits.tile_top(first);
+    while (first < last && !hits.tile(first).written) ++first;
+    const std::uint32_t right = first < last ? hits.tile_left(first) : hits.width();
+    for (std::uint32_t y = top; y < std::min(top + kTileSide, hits.height()); ++y)
+      film.put_row(left, y, right - left, background_[y]);
+  }
+}
+
+ShadingReport Shader::shade(const ShadingInput& input, ShadingMode mode, Film& film) {
+  const HitBuffer& hits = input.hits;
   background_ = background_rows(hits.height());
-  parallel_chunks(hits.height(), 64, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t y = begin; y < end; ++y)
-      std::fill_n(pixels.data() + y * hits.width(), hits.width(), background_[y]);
-  });
   std::vector<std::uint32_t> tiles;
   for (std::size_t i = 0; i < hits.tile_count(); ++i)
-    if (hits.tile(i).written) tiles.push_back(static_cast<std::uint32_t>(i));
+    if (hits.tile(i).written || shows_work(mode)) tiles.push_back(static_cast<std::uint32_t>(i));
+  if (!shows_work(mode)) {
+    const std::size_t across = (hits.width() + kTileSide - 1) / kTileSide;
+    parallel_chunks(hits.tile_count(), across, [&](std::size_t begin, std::size_t end) {
+      put_background(hits, begin, end, film);
+    });
+  }
 
-  vertex_normals_.update(mesh, hits, tiles);
-  const ShadedMesh shaded = shaded_mesh(mesh, mode);
+  vertex_normals_.update(input.mesh, hits, tiles);
+  ShadingReport report{.heat = prepare_heat(input, mode)};
+  const ShadedMesh mesh = shaded_mesh(input.mesh, mode);
+  tbb::enumerable_thread_specific<Lighting::Scratch> scratches;
+  std::atomic<std::uint64_t> rays = 0;
   parallel_chunks(tiles.size(), 4, [&](std::size_t begin, std::size_t end) {
+    std::uint64_t rays_here = 0;
     for (std::size_t i = begin; i < end; ++i) {
       Tile tile(hits, tiles[i]);
-      compute_surface(rays, tile.left, tile.top, shaded, *tile.hits, tile.rows, tile.surface);
-      light_tile(mode, tile);
-      write_pixels(tile, pixels);
+      compute_surface(input.rays, tile.left, tile.top, mesh, *tile.hits, tile.rows, tile.surface);
+      if (mode == ShadingMode::kLit) {
+        rays_here += light_from_lamps(*input.lighting, mesh, scratches.local(), tile);
+      } else {
+        show_tile(mode, tile);
+      }
+      put_tile(tile, film);
     }
+    rays.fetch_add(rays_here, std::memory_order_relaxed);
   });
+  report.rays = rays;
+  return report;
 }
 
 }  // namespace mdk

@@ -9,8 +9,11 @@
 
 #include "common/motion/posed_mesh.h"
 #include "common/trace/camera.h"
+#include "common/trace/film.h"
+#include "common/trace/heat_map.h"
 #include "common/trace/hit_buffer.h"
 #include "common/trace/kernels/surface_kernel.h"
+#include "common/trace/lighting.h"
 #include "common/trace/vertex_normals.h"
 
 namespace mdk {
@@ -18,7 +21,11 @@ namespace mdk {
 enum class ShadingMode {
   kDiffuse,   ///< headlight on the base colour, the papers' shader
   kNormals,   ///< the shading normal as a colour
+  kLit,       ///< key light with shadows, ambient occlusion, base colours and textures
   kClusters,  ///< headlight on one colour per cluster
+  kBoxes,     ///< heat map of node visits, tile by tile
+  kTests,     ///< heat map of triangle tests, tile by tile
+  kResidual,  ///< heat map of what the clusters' maps do not explain, by triangle
 };
 
 struct ShadingInfo {
@@ -35,32 +42,59 @@ ShadingMode find_shading(std::string_view id);
 /// A colour for a cluster (linear RGB): neighbours in number are far apart in hue.
 Vec3f cluster_color(std::uint32_t cluster);
 
-/// Turns hits into sRGB RGBA pixels (red lowest, row 0 on top). Keeps what it needs between frames.
+/// Whether a mode shows the counts of tiles.
+constexpr bool shows_work(ShadingMode mode) {
+  return mode == ShadingMode::kBoxes || mode == ShadingMode::kTests;
+}
+
+/// What a sample of the picture is made from.
+struct ShadingInput {
+  const PosedMesh& mesh;
+  const PinholeRays& rays;
+  const HitBuffer& hits;
+  const Lighting* lighting = nullptr;        ///< for kLit, which needs it
+  std::span<const TraceCounters> tile_work;  ///< one per tile, for modes that show it
+};
+
+struct ShadingReport {
+  std::uint64_t rays = 0;  ///< to lights and sky
+  HeatScale heat;          ///< of heat maps
+};
+
+/// Turns hits into light on a film. Keeps what it needs between frames.
 class Shader {
  public:
   explicit Shader(const Model& model);
 
-  /// `pixels`: width * height of the hit buffer. Runs in parallel. The same pixels for any number
-  /// of threads and any instruction set.
-  void shade(const PosedMesh& mesh, const PinholeRays& rays, const HitBuffer& hits,
-             ShadingMode mode, std::span<std::uint32_t> pixels);
+  /// One sample of every pixel. Runs in parallel. The same for any number of threads and any
+  /// instruction set.
+  ShadingReport shade(const ShadingInput& input, ShadingMode mode, Film& film);
 
  private:
   struct Tile;
 
+  HeatScale prepare_heat(const ShadingInput& input, ShadingMode mode);
   ShadedMesh shaded_mesh(const PosedMesh& mesh, ShadingMode mode) const;
-  void light_tile(ShadingMode mode, Tile& tile) const;
+  bool is_unlit(std::uint32_t triangle) const;
   void apply_textures(Tile& tile) const;
-  void write_pixels(const Tile& tile, std::span<std::uint32_t> pixels) const;
+  void show_normals(Tile& tile) const;
+  void show_work(Tile& tile) const;
+  void light_from_eye(ShadingMode mode, float least, Tile& tile) const;
+  void show_tile(ShadingMode mode, Tile& tile) const;
+  std::uint64_t light_from_lamps(const Lighting& lighting, const ShadedMesh& mesh,
+                                 Lighting::Scratch& scratch, Tile& tile) const;
+  void put_tile(Tile& tile, Film& film) const;
+  void put_background(const HitBuffer& hits, std::size_t first, std::size_t last, Film& film) const;
 
   const Model* model_;
   std::vector<Vec3f> material_colors_, cluster_colors_;
   std::vector<std::uint32_t> triangle_cluster_;
-  std::vector<std::uint8_t> is_flat_;   ///< per triangle
-  std::vector<std::uint8_t> is_unlit_;  ///< per material
+  std::vector<std::uint8_t> is_flat_;            ///< per triangle
+  std::vector<std::uint8_t> is_unlit_material_;  ///< per material
   bool has_unlit_ = false, has_textures_ = false;
   VertexNormals vertex_normals_;
-  std::vector<std::uint32_t> background_;  ///< one colour per row
+  HeatMap heat_;
+  std::vector<Vec3f> background_;  ///< one colour per row
 };
 
 }  // namespace mdk

@@ -12,6 +12,7 @@
 #include "common/trace/frame_stats.h"
 #include "common/trace/hit_buffer.h"
 #include "common/trace/kernels/tile_kernels.h"
+#include "common/trace/ray_beam.h"
 
 namespace mdk {
 
@@ -35,6 +36,13 @@ class Technique {
   /// Closest hits of one tile. `hits` is clear on entry.
   virtual void trace(const TileRays& tile, TileHits& hits, TileScratch& scratch,
                      TraceCounters* counters) const = 0;
+
+  /// Readies what occlude() needs, once per frame after update() and only for frames that are lit.
+  /// O(clusters), but for those that keep nothing of the kind.
+  virtual void prepare_occlusion() {}
+
+  /// Which rays of the beam meet the mesh. Techniques of ours agree on every ray, to the bit.
+  virtual void occlude(RayBeam& beam, TileScratch& scratch) const = 0;
 
   /// Memory of the structures, in bytes, without the mesh itself.
   virtual std::size_t structure_bytes() const = 0;

@@ -20,6 +20,7 @@ class SpinningTechnique final : public Technique {
  public:
   SpinningTechnique() : cost_ms_(kId == 0 ? kDearMs : kCheapMs) {}
   void update(const PosedMesh&) override { dear_updates += kId == 0; }
+  void occlude(RayBeam&, TileScratch&) const override {}
   void trace(const TileRays&, TileHits& hits, TileScratch&,
              TraceCounters* counters) const override {
     const Stopwatch watch;

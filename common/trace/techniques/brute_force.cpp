@@ -1,4 +1,5 @@
 // No structure at all: what every other technique is judged by.
+#include "common/trace/kernels/beam_kernels.h"
 #include "common/trace/techniques/makers.h"
 
 namespace mdk {
@@ -10,6 +11,9 @@ class BruteForceTechnique final : public Technique {
   void trace(const TileRays& tile, TileHits& hits, TileScratch& scratch,
              TraceCounters* counters) const override {
     trace_tile_brute_force(tile, soup_, hits, scratch, counters);
+  }
+  void occlude(RayBeam& beam, TileScratch&) const override {
+    occlude_beam_brute_force(soup_, beam);
   }
   std::size_t structure_bytes() const override { return 0; }
 

@@ -5,18 +5,22 @@
 #include <vector>
 
 #include "common/structures/wide_bvh.h"
+#include "common/trace/kernels/beam_kernels.h"
 #include "common/trace/techniques/makers.h"
 
 namespace mdk {
 
 class BvhTechnique : public Technique {
  public:
-  explicit BvhTechnique(const Model& model) : boxes_(model.triangle_count()) {}
+  explicit BvhTechnique(const Model& model)
+      : boxes_(model.triangle_count()), mesh_bounds_(model.bounds) {}
 
   void update(const PosedMesh& mesh) final;
   void set_view(const PinholeRays& rays) final;
   void trace(const TileRays& tile, TileHits& hits, TileScratch& scratch,
              TraceCounters* counters) const final;
+  void prepare_occlusion() final;
+  void occlude(RayBeam& beam, TileScratch& scratch) const final;
   std::size_t structure_bytes() const final;
 
  protected:
@@ -35,7 +39,9 @@ class BvhTechnique : public Technique {
  private:
   std::vector<TriangleBlock> blocks_;
   const Vec3f* positions_ = nullptr;
+  Aabb mesh_bounds_;  ///< at all times
   BvhView view_{};
+  BeamSpace beam_space_;
   mutable ProjectionCache cache_;
 };
 

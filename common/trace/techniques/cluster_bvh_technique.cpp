@@ -32,6 +32,26 @@ void ClusterBvhTechnique::trace(const TileRays& tile, TileHits& hits, TileScratc
                            hits, scratch, counters);
 }
 
+void ClusterBvhTechnique::prepare_occlusion() {
+  const std::size_t count = views_.size();
+  beam_spaces_.resize(count + 1);
+  beam_clusters_.resize(count);
+  for (std::size_t c = 0; c < count; ++c) {
+    const std::vector<WideBvhNode>& nodes = present_->trees[c].nodes;
+    if (nodes.empty()) continue;
+    beam_spaces_[c] = make_beam_space(maps_[c], nodes[0].box(), model_.bounds);
+    beam_clusters_[c] = {nodes, present_->first_leaf[c], &beam_spaces_[c]};
+  }
+  if (!top_.nodes.empty())
+    beam_spaces_[count] = make_beam_space(Affine3d{}, top_.nodes[0].box(), model_.bounds);
+}
+
+void ClusterBvhTechnique::occlude(RayBeam& beam, TileScratch&) const {
+  const BeamBvh top{top_.nodes, 0, &beam_spaces_.back()};
+  occlude_beam_two_level_bvh({top, top_.box_of_leaf, beam_clusters_},
+                             {present_->blocks, positions_}, beam);
+}
+
 std::size_t ClusterBvhTechnique::structure_bytes() const {
   return top_.bytes() + cache_.bytes() + model_.local_from_world.size_bytes() +
          model_.cluster_world_boxes.size_bytes() + tree_bytes();

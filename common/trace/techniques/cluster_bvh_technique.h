@@ -7,6 +7,7 @@
 
 #include "common/structures/top_level.h"
 #include "common/trace/cluster_trees.h"
+#include "common/trace/kernels/beam_kernels.h"
 #include "common/trace/techniques/makers.h"
 
 namespace mdk {
@@ -23,6 +24,8 @@ class ClusterBvhTechnique : public Technique {
   void set_view(const PinholeRays& rays) final;
   void trace(const TileRays& tile, TileHits& hits, TileScratch& scratch,
              TraceCounters* counters) const final;
+  void prepare_occlusion() final;
+  void occlude(RayBeam& beam, TileScratch& scratch) const final;
   std::size_t structure_bytes() const final;
 
  protected:
@@ -40,6 +43,8 @@ class ClusterBvhTechnique : public Technique {
   std::vector<Affine3d> maps_;  ///< local_from_world, by cluster
   TopLevel top_;
   BvhView top_view_{};
+  std::vector<BeamSpace> beam_spaces_;  ///< by cluster, then the world's
+  std::vector<BeamBvh> beam_clusters_;  ///< by cluster
   const Vec3f* positions_ = nullptr;
   mutable ProjectionCache cache_;
 };

@@ -152,6 +152,61 @@ ImageBounds image_bounds(const RTCBounds& box, const PinholeRays& rays) {
   return bounds;
 }
 
+/// The rays of a beam as Embree wants them: the sixteen of a group are a packet, all packets a
+/// stream of one direction.
+class BeamPackets {
+ public:
+  BeamPackets() {
+    for (RTCRay16& packet : packets_)
+      for (std::uint32_t i = 0; i < kWidth; ++i) {
+        packet.time[i] = 0;
+        packet.mask[i] = ~0u;
+        packet.id[i] = 0;
+        packet.flags[i] = 0;
+        packet.tnear[i] = 0;
+      }
+  }
+
+  void occlude(RTCScene scene, RayBeam& beam) {
+    static_assert(kWidth == kBeamGroup && kPackets == kBeamGroups);
+    const std::uint32_t packets = (beam.count + kWidth - 1) / kWidth;
+    for (std::uint32_t p = 0; p < packets; ++p) aim(packets_[p], beam, p * kWidth);
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    rtcOccludedNM(scene, &context, reinterpret_cast<RTCRayN*>(packets_), kWidth, packets,
+                  sizeof(RTCRay16));
+    for (std::uint32_t p = 0; p < packets; ++p) {
+      std::uint32_t bits = 0;
+      for (std::uint32_t i = 0; i < kWidth; ++i)
+        bits |= static_cast<std::uint32_t>(packets_[p].tfar[i] < 0) << i;
+      const std::uint32_t rays = std::min(kWidth, beam.count - p * kWidth);
+      beam.occluded[p] = static_cast<std::uint16_t>(bits & ((1u << rays) - 1u));
+    }
+  }
+
+ private:
+  static void aim(RTCRay16& packet, const RayBeam& beam, std::uint32_t first) {
+    const BeamBasis& basis = beam.basis;
+    const float unit = 1 / dot(basis.axis[2], basis.axis[2]);
+    const Vec3f across = basis.axis[0] * unit, down = basis.axis[1] * unit,
+                along = basis.axis[2] * unit;
+    for (std::uint32_t i = 0; i < kWidth; ++i) {
+      const std::uint32_t ray = std::min(first + i, beam.count - 1);
+      const float u = beam.u[ray], v = beam.v[ray], w = beam.w[ray];
+      packet.org_x[i] = basis.origin.x + (across.x * u + down.x * v + along.x * w);
+      packet.org_y[i] = basis.origin.y + (across.y * u + down.y * v + along.y * w);
+      packet.org_z[i] = basis.origin.z + (across.z * u + down.z * v + along.z * w);
+      packet.dir_x[i] = basis.axis[2].x;
+      packet.dir_y[i] = basis.axis[2].y;
+      packet.dir_z[i] = basis.axis[2].z;
+      packet.tfar[i] = std::numeric_limits<float>::infinity();
+    }
+  }
+
+  alignas(64) RTCRay16 packets_[kPackets];
+};
+
 class EmbreeTechnique final : public Technique {
  public:
   EmbreeTechnique(const Model& model, EmbreeMode mode)
@@ -188,6 +243,9 @@ class EmbreeTechnique final : public Technique {
   }
   void trace(const TileRays& tile, TileHits& hits, TileScratch&, TraceCounters*) const override {
     if (bounds_.meets(tile)) packets_.local().trace(scene_, tile, hits);
+  }
+  void occlude(RayBeam& beam, TileScratch&) const override {
+    beam_packets_.local().occlude(scene_, beam);
   }
   std::size_t structure_bytes() const override { return static_cast<std::size_t>(bytes_); }
 
@@ -242,6 +300,7 @@ class EmbreeTechnique final : public Technique {
   RTCScene scene_ = nullptr;
   ImageBounds bounds_{};
   mutable tbb::enumerable_thread_specific<TilePackets> packets_;
+  mutable tbb::enumerable_thread_specific<BeamPackets> beam_packets_;
   std::vector<Vec3f> padded_;
   bool built_ = false;
 };

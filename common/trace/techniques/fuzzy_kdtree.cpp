@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "common/structures/kd_tree_builder.h"
+#include "common/trace/kernels/beam_kernels.h"
 #include "common/trace/techniques/makers.h"
 
 namespace mdk {
@@ -41,6 +42,22 @@ class FuzzyKdTechnique final : public Technique {
     trace_tile_two_level_kd(tile, top_view_, clusters_, soup_, hits, scratch, counters);
   }
 
+  void prepare_occlusion() override {
+    const std::size_t count = clusters_.size();
+    beam_spaces_.resize(count + 1);
+    beam_clusters_.resize(count);
+    for (std::size_t c = 0; c < count; ++c) {
+      beam_spaces_[c] = make_beam_space(maps_[c], clusters_[c].tree.bounds, model_.bounds);
+      beam_clusters_[c] = {clusters_[c].tree, &beam_spaces_[c]};
+    }
+    beam_spaces_[count] = make_beam_space(Affine3d{}, top_.bounds, model_.bounds);
+  }
+
+  void occlude(RayBeam& beam, TileScratch& scratch) const override {
+    occlude_beam_two_level_kd({top_.view(), &beam_spaces_.back()}, beam_clusters_, soup_, beam,
+                              scratch);
+  }
+
   std::size_t structure_bytes() const override {
     return model_.kd_nodes.size_bytes() + model_.kd_refs.size_bytes() +
            model_.local_from_world.size_bytes() + model_.cluster_world_boxes.size_bytes() +
@@ -55,6 +72,8 @@ class FuzzyKdTechnique final : public Technique {
   KdTree top_;
   KdView top_view_;
   std::vector<KdView> clusters_;
+  std::vector<BeamSpace> beam_spaces_;  ///< by cluster, then the world's
+  std::vector<BeamKd> beam_clusters_;
 };
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "common/structures/kd_tree_builder.h"
+#include "common/trace/kernels/beam_kernels.h"
 #include "common/trace/techniques/makers.h"
 
 namespace mdk {
@@ -25,6 +26,7 @@ class StaticKdTechnique final : public Technique {
   }
   void update(const PosedMesh& mesh) override {
     soup_ = soup_of(mesh);
+    mesh_bounds_ = mesh.model().bounds;
     present_.tree = (is_passing(mesh) ? between_keys_ : at_keys_).at(moment_of(mesh)).view();
   }
   void set_view(const PinholeRays& rays) override {
@@ -33,6 +35,12 @@ class StaticKdTechnique final : public Technique {
   void trace(const TileRays& tile, TileHits& hits, TileScratch& scratch,
              TraceCounters* counters) const override {
     trace_tile_kd(tile, present_, soup_, hits, scratch, counters);
+  }
+  void prepare_occlusion() override {
+    beam_space_ = make_beam_space(Affine3d{}, present_.tree.bounds, mesh_bounds_);
+  }
+  void occlude(RayBeam& beam, TileScratch& scratch) const override {
+    occlude_beam_kd({present_.tree, &beam_space_}, soup_, beam, scratch);
   }
   std::size_t structure_bytes() const override {
     std::size_t bytes = 0;
@@ -53,6 +61,8 @@ class StaticKdTechnique final : public Technique {
   TriangleSoup soup_{};
   std::map<Moment, KdTree> at_keys_, between_keys_;
   KdView present_;
+  BeamSpace beam_space_;
+  Aabb mesh_bounds_;  ///< at all times
 };
 
 }  // namespace

@@ -75,6 +75,12 @@ void TechniqueChooser::trace(const TileRays& tile, TileHits& hits, TileScratch& 
   if (number < kMostTimedTiles) tile_ms_[number] = static_cast<float>(watch.milliseconds());
 }
 
+void TechniqueChooser::prepare_occlusion() { candidate(serving_).prepare_occlusion(); }
+
+void TechniqueChooser::occlude(RayBeam& beam, TileScratch& scratch) const {
+  techniques_[serving_]->occlude(beam, scratch);
+}
+
 std::size_t TechniqueChooser::structure_bytes() const {
   std::size_t bytes = 0;
   for (const auto& technique : techniques_)

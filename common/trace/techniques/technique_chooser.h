@@ -36,6 +36,8 @@ class TechniqueChooser final : public Technique {
   void set_view(const PinholeRays& rays) override;
   void trace(const TileRays& tile, TileHits& hits, TileScratch& scratch,
              TraceCounters* counters) const override;
+  void prepare_occlusion() override;
+  void occlude(RayBeam& beam, TileScratch& scratch) const override;
   std::size_t structure_bytes() const override;
 
   /// "refit-bvh, 5.2 ms; rebuild-bvh +63 %": the choice and how far behind the others were.
