@@ -137,7 +137,7 @@ void Renderer::State::trace(const FrameRequest& request, const PinholeRays& rays
 void Renderer::State::shade(const FrameRequest& request, const PinholeRays& rays,
                             std::uint32_t sample) {
   const Stopwatch watch;
-  ShadingInput input{mesh, rays, hits, nullptr, {}};
+  ShadingInput input{.mesh = mesh, .rays = rays, .hits = hits};
   Lighting lighting(*technique, rays, model.bounds);
   if (request.shading == ShadingMode::kLit) {
     technique->prepare_occlusion();

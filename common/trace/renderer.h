@@ -26,7 +26,7 @@ struct FrameRequest {
   ShadingMode shading = ShadingMode::kDiffuse;
   std::uint32_t samples = 1;  ///< per pixel, 1 to kMostSamples; 1: through the pixel's centre
   std::uint32_t occlusion_rays = kOcclusionRays;  ///< per sample of kLit, 0 to kMostOcclusionRays
-  std::span<const KeyInterval> shutter;           ///< the moment of each sample; empty: all at `at`
+  std::span<const KeyInterval> shutter = {};      ///< the moment of each sample; empty: all at `at`
   Counting counting = Counting::kOff;             ///< counts cost time: never time a counting frame
   const SkeletonPose* pose = nullptr;             ///< where there is one, it counts instead of `at`
 };

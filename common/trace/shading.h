@@ -52,8 +52,8 @@ struct ShadingInput {
   const PosedMesh& mesh;
   const PinholeRays& rays;
   const HitBuffer& hits;
-  const Lighting* lighting = nullptr;        ///< for kLit, which needs it
-  std::span<const TraceCounters> tile_work;  ///< one per tile, for modes that show it
+  const Lighting* lighting = nullptr;             ///< for kLit, which needs it
+  std::span<const TraceCounters> tile_work = {};  ///< one per tile, for modes that show it
 };
 
 struct ShadingReport {
