@@ -40,6 +40,8 @@ App::App(const ViewerOptions& options)
     state_.settings.technique =
         static_cast<std::size_t>(&find_technique(options_.technique) - technique_table().data());
   state_.settings.shading = options_.shading;
+  state_.settings.samples = options_.samples;
+  state_.settings.occlusion_rays = options_.occlusion_rays;
   if (!options_.file.empty()) loader_.load({options_.file});
 }
 
@@ -224,8 +226,9 @@ void App::show_finished_frame() {
     state_.last_work = WorkReport{job.technique, frame->stats.rays, frame->stats.counters};
     return;
   }
-  state_.last_frame = FrameReport{job.technique, job.request.width,      job.request.height,
-                                  frame->stats,  frame->structure_bytes, frame->note};
+  state_.last_frame =
+      FrameReport{job.technique,          job.request.width, job.request.height, frame->stats,
+                  frame->structure_bytes, frame->note,       frame->heat};
   const double ms = frame->stats.time_to_image_ms();
   state_.history.add({job.technique, ms});
   const PixelRect full = picture_pixels();
@@ -261,6 +264,8 @@ RenderJob App::wanted_job() const {
   job.request.width = std::max(1u, static_cast<std::uint32_t>(room.width) / divisor);
   job.request.height = std::max(1u, static_cast<std::uint32_t>(room.height) / divisor);
   job.request.shading = state_.settings.shading;
+  job.request.samples = state_.settings.samples;
+  job.request.occlusion_rays = state_.settings.occlusion_rays;
   return job;
 }
 

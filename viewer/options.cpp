@@ -87,6 +87,12 @@ std::optional<ViewerOptions> parse_options(int argc, const char* const* argv, st
   app.add_option("--size", size, "window size WxH (1280x800)");
   app.add_option("--technique", options.technique, "technique to start with, by id");
   app.add_option("--shading", shading, "shading mode to start with, by id (diffuse)");
+  app.add_option("--samples", options.samples, "samples per pixel (1)")
+      ->check(CLI::Range(1u, kMostSamples));
+  app.add_option("--ao", options.occlusion_rays,
+                 "rays per sample for ambient occlusion, where the shading is lit (" +
+                     std::to_string(kOcclusionRays) + ")")
+      ->check(CLI::Range(0u, kMostOcclusionRays));
   app.add_option("--clip", options.clip, "animation to show, by name (the first)");
   app.add_option("--time", options.time, "seconds from the clip's start (0)");
   app.add_flag("--play", play, "start playing");

@@ -26,6 +26,8 @@ struct ViewerOptions {
   std::optional<WindowSize> size;  ///< none: 1280x800, enlarged on dense displays
   std::string technique;           ///< empty: the table's first
   ShadingMode shading = ShadingMode::kDiffuse;
+  std::uint32_t samples = 1;
+  std::uint32_t occlusion_rays = kOcclusionRays;
   std::string clip;  ///< empty: the file's first
   double time = 0;   ///< seconds
   StartMode start = StartMode::kPaused;

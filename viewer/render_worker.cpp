@@ -10,7 +10,9 @@ namespace mdk {
 bool same_picture(const RenderJob& a, const RenderJob& b) {
   return a.file == b.file && a.technique == b.technique && a.request.at == b.request.at &&
          a.request.camera == b.request.camera && a.request.width == b.request.width &&
-         a.request.height == b.request.height && a.request.shading == b.request.shading;
+         a.request.height == b.request.height && a.request.shading == b.request.shading &&
+         a.request.samples == b.request.samples &&
+         a.request.occlusion_rays == b.request.occlusion_rays;
 }
 
 RenderWorker::RenderWorker(std::function<void()> on_finished)
@@ -74,6 +76,7 @@ FinishedFrame RenderWorker::render(RenderJob job) {
     frame.stats = renderer_->render(job.request);
     frame.structure_bytes = renderer_->structure_bytes();
     frame.note = renderer_->technique_note();
+    frame.heat = renderer_->heat_scale();
     const auto pixels = renderer_->pixels();
     frame.pixels.assign(pixels.begin(), pixels.end());
   } catch (const std::exception& failure) {

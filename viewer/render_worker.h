@@ -32,7 +32,8 @@ struct FinishedFrame {
   std::string error;  ///< a sentence where there is no picture, else empty
   FrameStats stats;
   std::size_t structure_bytes = 0;
-  std::string note;                   ///< Technique::note()
+  std::string note;  ///< Technique::note()
+  HeatScale heat;
   std::vector<std::uint32_t> pixels;  ///< sRGB RGBA, row 0 on top
 };
 

@@ -8,6 +8,7 @@
 
 #include "common/trace/technique.h"
 #include "viewer/frame_charts.h"
+#include "viewer/heat_legend.h"
 #include "viewer/number_text.h"
 #include "viewer/ui_parts.h"
 
@@ -81,14 +82,21 @@ void draw_techniques(const Theme& theme, ViewState& state, UiResult& result) {
 
 void draw_shading(const Theme& theme, ViewState& state, UiResult& result) {
   heading(theme, "SHADING");
-  std::vector<ButtonSegment> segments;
-  std::size_t chosen = 0;
-  for (const ShadingInfo& info : shading_table()) {
-    if (info.mode == state.settings.shading) chosen = segments.size();
-    segments.push_back({"shading:" + std::string(info.id), std::string(info.label)});
+  // Two rows: all of them side by side would leave no room for their names.
+  const std::span<const ShadingInfo> modes = shading_table();
+  const std::size_t half = (modes.size() + 1) / 2;
+  for (const auto& row : {modes.first(half), modes.subspan(half)}) {
+    std::vector<ButtonSegment> segments;
+    std::size_t chosen = row.size();
+    for (const ShadingInfo& info : row) {
+      if (info.mode == state.settings.shading) chosen = segments.size();
+      segments.push_back({"shading:" + std::string(info.id), std::string(info.label)});
+    }
+    if (const auto picked = segmented_buttons(segments, chosen, result.widgets))
+      state.settings.shading = row[*picked].mode;
   }
-  if (const auto picked = segmented_buttons(segments, chosen, result.widgets))
-    state.settings.shading = shading_table()[*picked].mode;
+  if (state.last_frame && state.last_frame->heat.top > 0)
+    draw_heat_legend(theme, state.last_frame->heat);
 }
 
 void draw_frame_times(const Theme& theme, const ViewState& state) {

@@ -28,6 +28,8 @@ enum class Resolution {
 struct ViewSettings {
   std::size_t technique = 0;  ///< row of technique_table()
   ShadingMode shading = ShadingMode::kDiffuse;
+  std::uint32_t samples = 1;                      ///< per pixel
+  std::uint32_t occlusion_rays = kOcclusionRays;  ///< per sample of lit pictures
   Resolution resolution = Resolution::kAuto;
   bool count_work = false;    ///< trace an extra counting frame now and then
   bool keep_tracing = false;  ///< trace again although nothing has changed, to watch the times
@@ -44,6 +46,7 @@ struct FrameReport {
   FrameStats stats;  ///< without counters
   std::size_t structure_bytes = 0;
   std::string note;  ///< what the technique chose, where it chooses
+  HeatScale heat;    ///< of heat maps
 };
 
 /// What the last counting frame counted.

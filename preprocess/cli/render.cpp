@@ -4,10 +4,12 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <sstream>
 
 #include "common/base/error.h"
 #include "common/base/isa.h"
 #include "common/trace/renderer.h"
+#include "common/trace/shutter.h"
 #include "formats/image_writer.h"
 #include "formats/mdk_view.h"
 #include "preprocess/cli/commands.h"
@@ -29,6 +31,7 @@ using Json = nlohmann::ordered_json;
 
 struct RenderArguments {
   std::string input, output, frames, time, clip, stats;
+  std::string shutter = "0";
   std::string technique{technique_table().front().id};
   ViewOptions view;
   MachineOptions machine;
@@ -80,6 +83,13 @@ std::vector<PlannedFrame> plan_frames(const RenderArguments& arguments, const Mo
   return frames;
 }
 
+double parse_shutter(const std::string& text) {
+  const double seconds = parse_real("--shutter", text);
+  if (seconds < 0)
+    throw Error(ErrorCode::kUsage, "--shutter " + text + ": expected seconds, 0 or more");
+  return seconds;
+}
+
 /// Of all clips that are rendered, whole: the camera is the same for any choice of their keys.
 Aabb bounds_of(const Model& model, const std::vector<PlannedFrame>& frames) {
   std::set<std::uint32_t> clips;
@@ -87,6 +97,17 @@ Aabb bounds_of(const Model& model, const std::vector<PlannedFrame>& frames) {
   Aabb bounds;
   for (const std::uint32_t clip : clips) bounds.extend(clip_bounds(model, clip));
   return bounds;
+}
+
+/// When each sample of a frame is taken, or nothing where all are taken at once.
+std::vector<KeyInterval> moments_of(const Model& model, const PlannedFrame& frame,
+                                    const RenderArguments& arguments, const FrameRequest& request) {
+  const double shutter = parse_shutter(arguments.shutter);
+  if (shutter == 0) return {};
+  std::vector<KeyInterval> moments =
+      shutter_moments(model, frame.clip, frame.seconds, shutter, request.samples);
+  moments.front() = frame.at;
+  return moments;
 }
 
 Json stats_row(const Model& model, const PlannedFrame& frame, const FrameStats& stats,
@@ -103,9 +124,18 @@ Json stats_row(const Model& model, const PlannedFrame& frame, const FrameStats& 
           {"prebuild_ms", stats.prebuild_ms},
           {"rays", stats.rays},
           {"hits", stats.hits},
+          {"light_rays", stats.light_rays},
           {"node_visits_per_ray", work.node_visits},
           {"triangle_tests_per_ray", work.triangle_tests},
           {"clusters_per_ray", work.clusters}};
+}
+
+/// What the lightest colour of a heat map means.
+std::string heat_text(const HeatScale& heat) {
+  if (heat.top == 0) return {};
+  std::ostringstream text;
+  text << ", yellow is " << heat.top << ' ' << heat.unit;
+  return text.str();
 }
 
 /// Renders and writes every frame; returns the rows of --stats.
@@ -117,24 +147,28 @@ Json render_frames(const RenderArguments& arguments, const Model& model,
   request.camera = choose_camera(arguments.view, bounds_of(model, frames), size);
   request.width = size.width;
   request.height = size.height;
-  request.shading = find_shading(arguments.view.shading);
+  choose_shading(arguments.view, request);
 
   Json rows = Json::array();
   for (std::size_t i = 0; i < frames.size(); ++i) {
     progress.report("render", static_cast<double>(i) / static_cast<double>(frames.size()));
+    const std::vector<KeyInterval> moments = moments_of(model, frames[i], arguments, request);
     request.at = frames[i].at;
+    request.shutter = moments;
     request.counting = Counting::kOff;
     const FrameStats stats = renderer.render(request);
+    const HeatScale heat = renderer.heat_scale();
     const std::string path = numbered_path(arguments.output, frames[i].at.key0);
     write_png(path, size.width, size.height, renderer.pixels());
     if (arguments.messages.verbose) {
       progress.clear();
       std::cerr << "mdprep: " << path << ": " << fixed_text(stats.time_to_image_ms(), 2)
-                << " ms to the image\n";
+                << " ms to the image" << heat_text(heat) << "\n";
     }
     request.counting = Counting::kOn;  // a second time, since counting slows a frame down
     const FrameStats counted = arguments.stats.empty() ? stats : renderer.trace(request);
     rows.push_back(stats_row(model, frames[i], stats, counted));
+    if (heat.top > 0) rows.back()["heat_scale"] = {{"top", heat.top}, {"unit", heat.unit}};
   }
   return rows;
 }
@@ -166,7 +200,9 @@ void run_render(const RenderArguments& arguments) {
   const MachineLimits limits(arguments.machine);
   progress_style(arguments.messages);  // refuse wrong words before any file is opened
   find_technique(arguments.technique);
-  find_shading(arguments.view.shading);
+  FrameRequest probe;
+  choose_shading(arguments.view, probe);
+  parse_shutter(arguments.shutter);
   const ImageSize size = parse_image_size(arguments.view.size);
   if (!arguments.view.camera.empty()) parse_camera(arguments.view.camera);
 
@@ -185,6 +221,7 @@ void run_render(const RenderArguments& arguments) {
                          {"height", size.height},
                          {"technique", arguments.technique},
                          {"shading", arguments.view.shading},
+                         {"samples", std::stoul(arguments.view.samples)},
                          {"frames", rows}};
     write_text_file(arguments.stats,
                     report.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
@@ -235,6 +272,11 @@ CommandBody add_render_command(CLI::App& command) {
                       "\n(default: fuzzy-bvh). The picture is the same with each of ours.")
       ->type_name("ID");
   add_view_options(command, arguments->view);
+  command
+      .add_option("--shutter", arguments->shutter,
+                  "How long the shutter is open, in seconds, half of it before the frame's time\n"
+                  "(default: 0). Each of --samples has a time of its own, so moving parts blur.")
+      ->type_name("S");
   command
       .add_option("--stats", arguments->stats,
                   "Write times in ms and work per ray of every frame as JSON (mdprep-render/1).")

@@ -11,6 +11,9 @@
 namespace mdk {
 namespace {
 
+constexpr CountRange kSampleRange{1, kMostSamples};
+constexpr CountRange kOcclusionRange{0, kMostOcclusionRays};
+
 std::uint32_t parse_side(std::string_view whole, std::string_view text) {
   std::uint64_t side = 0;
   const char* end = text.data() + text.size();
@@ -48,6 +51,25 @@ void add_view_options(CLI::App& command, ViewOptions& options) {
     modes += (modes.empty() ? "" : ", ") + std::string(mode.id);
   command.add_option("--shading", options.shading, "One of " + modes + " (default: diffuse).")
       ->type_name("MODE");
+  command
+      .add_option("--samples", options.samples,
+                  "Samples per pixel, 1 to " + std::to_string(kSampleRange.highest) +
+                      ", averaged for smooth edges and soft light (default: 1).\nTimes are for all "
+                      "of them.")
+      ->type_name("N");
+  command
+      .add_option("--ao", options.occlusion_rays,
+                  "Rays per sample that see how much sky is open (ambient occlusion) in --shading "
+                  "lit,\n0 to " +
+                      std::to_string(kOcclusionRange.highest) +
+                      " (default: " + std::to_string(kOcclusionRays) + "); 0: shadows alone.")
+      ->type_name("N");
+}
+
+void choose_shading(const ViewOptions& options, FrameRequest& request) {
+  request.shading = find_shading(options.shading);
+  request.samples = parse_count("--samples", options.samples, kSampleRange);
+  request.occlusion_rays = parse_count("--ao", options.occlusion_rays, kOcclusionRange);
 }
 
 ImageSize parse_image_size(std::string_view text) {

@@ -9,7 +9,7 @@
 
 #include "common/math/aabb.h"
 #include "common/trace/camera.h"
-#include "common/trace/shading.h"
+#include "common/trace/renderer.h"
 
 namespace CLI {
 class App;
@@ -21,8 +21,13 @@ struct ViewOptions {
   std::string size = "512x512";
   std::string camera;  ///< empty: all of the clip's bounds fit the picture
   std::string shading = "diffuse";
+  std::string samples = "1";
+  std::string occlusion_rays = std::to_string(kOcclusionRays);
 };
 void add_view_options(CLI::App& command, ViewOptions& options);
+
+/// What --shading, --samples and --ao say; throws Error (kUsage).
+void choose_shading(const ViewOptions& options, FrameRequest& request);
 
 struct ImageSize {
   std::uint32_t width = 0, height = 0;

@@ -181,8 +181,17 @@ void walk_beam_bvh(const BeamBvh& tree, const BeamBasis& basis, const BeamRays& 
 
 void beam_bvh(const BeamBvh& tree, const BeamBlocks& blocks, const BeamBasis& basis,
               BeamRays& rays) {
+  PosedBlock spare;
   walk_beam_bvh(tree, basis, rays, [&](std::uint32_t leaf) {
-    rays.test(blocks.blocks[tree.first_leaf + leaf], blocks.positions);
+    const std::uint32_t number = tree.first_leaf + leaf;
+    const TriangleBlock& block = blocks.blocks[number];
+    const auto pose = [&](PosedBlock& out) { pose_block(block, blocks.positions, out); };
+    if (blocks.cache->usable()) {
+      rays.test(blocks.cache->get(number, spare, pose), block.count);
+    } else {
+      pose(spare);
+      rays.test(spare, block.count);
+    }
   });
 }
 
@@ -238,7 +247,8 @@ class BeamBatch {
   void flush() {
     if (block_.count == 0) return;
     block_.pad();
-    rays_.test(block_, soup_.positions);
+    pose_block(block_, soup_.positions, posed_);
+    rays_.test(posed_, block_.count);
     block_.count = 0;
   }
 
@@ -246,6 +256,7 @@ class BeamBatch {
   BeamRays& rays_;
   const TriangleSoup& soup_;
   TriangleBlock block_;
+  PosedBlock posed_;
 };
 
 /// Whether this beam sees an item for the first time.

@@ -7,6 +7,7 @@
 
 #include "common/math/aabb.h"
 #include "common/math/affine3.h"
+#include "common/trace/kernels/frame_cache.h"
 #include "common/trace/kernels/tile_kernels.h"
 #include "common/trace/ray_beam.h"
 
@@ -44,10 +45,17 @@ struct BeamKd {
   const BeamSpace* space;
 };
 
+/// The corners of a block's triangles, side by side.
+struct alignas(64) PosedBlock {
+  float x[3][kBlockTriangles], y[3][kBlockTriangles], z[3][kBlockTriangles];
+};
+using PosedBlockCache = FrameCache<PosedBlock, 1 << 18>;
+
 /// The present triangles leaf by leaf.
 struct BeamBlocks {
   std::span<const TriangleBlock> blocks;
   const Vec3f* positions;
+  PosedBlockCache* cache;  ///< in which the frame was begun
 };
 
 /// All find the same rays, bit for bit, on every machine: structures only choose which triangles

@@ -33,20 +33,37 @@ struct BeamBounds {
   float u0, u1, v0, v1, w;
 };
 
+/// Fetches a block's corners.
+HWY_INLINE void pose_block(const TriangleBlock& block, const Vec3f* positions, PosedBlock& out) {
+  const FloatTag d;
+  for (std::size_t i = 0; i < block.count; i += hn::Lanes(d))
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Points p = gather_points(block.corner[k] + i, positions);
+      hn::Store(p.x, d, out.x[k] + i);
+      hn::Store(p.y, d, out.y[k] + i);
+      hn::Store(p.z, d, out.z[k] + i);
+    }
+}
+
 /// The rays that are not yet occluded, in groups of sixteen.
 class BeamRays {
  public:
   explicit BeamRays(RayBeam& beam) : beam_(beam) {
-    for (std::uint32_t g = 0; g < kBeamGroups; ++g) {
-      const std::uint32_t first = g * kBeamGroup;
-      const std::uint32_t rays = std::min(beam.count - std::min(beam.count, first), kBeamGroup);
-      alive_[g] = static_cast<std::uint16_t>((1u << rays) - 1u);
-      for (std::uint32_t i = rays; rays > 0 && i < kBeamGroup; ++i) {  // numbers, if not rays
-        beam.u[first + i] = beam.u[first];
-        beam.v[first + i] = beam.v[first];
-        beam.w[first + i] = beam.w[first];
+    for (std::uint32_t first = 0; first < beam.count; first += kBeamGroup) {
+      const std::uint32_t rays = std::min(beam.count - first, kBeamGroup);
+      for (std::uint32_t i = first + rays; i < first + kBeamGroup; ++i) {  // numbers, if not rays
+        beam.u[i] = beam.u[first];
+        beam.v[i] = beam.v[first];
+        beam.w[i] = beam.w[first];
       }
-      set_group_bounds(g);
+      const std::size_t g = first / kBeamGroup;
+      alive_[g] = static_cast<std::uint16_t>((1u << rays) - 1u);
+      groups_ |= 1u << g;
+      group_u0_[g] = over_group<Least>(beam.u + first);
+      group_u1_[g] = over_group<Largest>(beam.u + first);
+      group_v0_[g] = over_group<Least>(beam.v + first);
+      group_v1_[g] = over_group<Largest>(beam.v + first);
+      group_w_[g] = over_group<Least>(beam.w + first);
     }
     set_bounds();
   }
@@ -57,8 +74,9 @@ class BeamRays {
   /// Grows whenever bounds() has changed.
   std::uint32_t version() const { return version_; }
 
-  void test(const TriangleBlock& block, const Vec3f* positions) {
-    std::uint32_t met = project(block, positions);
+  /// `count`: of the block's triangles.
+  void test(const PosedBlock& block, std::uint32_t count) {
+    std::uint32_t met = project(block, count);
     for (; met != 0 && groups_ != 0; met &= met - 1)
       test_triangle(static_cast<std::size_t>(__builtin_ctz(met)));
     if (!changed_) return;
@@ -87,17 +105,16 @@ class BeamRays {
   }
 
   /// Which triangles of the block some ray may meet; fills projected_.
-  HWY_INLINE std::uint32_t project(const TriangleBlock& block, const Vec3f* positions) {
+  HWY_INLINE std::uint32_t project(const PosedBlock& block, std::uint32_t count) {
     const FloatTag d;
     const BeamBasis& basis = beam_.basis;
     std::uint32_t met = 0;
-    for (std::size_t i = 0; i < block.count; i += hn::Lanes(d)) {
+    for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
       FloatVec u[3], v[3], w[3];
       for (std::size_t k = 0; k < 3; ++k) {
-        const Points p = gather_points(block.corner[k] + i, positions);
-        const Points r{hn::Sub(p.x, hn::Set(d, basis.origin.x)),
-                       hn::Sub(p.y, hn::Set(d, basis.origin.y)),
-                       hn::Sub(p.z, hn::Set(d, basis.origin.z))};
+        const Points r{hn::Sub(hn::Load(d, block.x[k] + i), hn::Set(d, basis.origin.x)),
+                       hn::Sub(hn::Load(d, block.y[k] + i), hn::Set(d, basis.origin.y)),
+                       hn::Sub(hn::Load(d, block.z[k] + i), hn::Set(d, basis.origin.z))};
         const auto along = [&](const Vec3f& axis) {
           return dot_product({hn::Set(d, axis.x), hn::Set(d, axis.y), hn::Set(d, axis.z)}, r);
         };
@@ -123,7 +140,7 @@ class BeamRays {
       const auto outside = hn::Or(hn::Or(beside_u, beside_v), hn::Lt(w1, hn::Set(d, bounds_.w)));
       met |= bits_of(hn::AndNot(outside, sound)) << i;
     }
-    return met & ((1u << block.count) - 1u);
+    return met & ((1u << count) - 1u);
   }
 
   HWY_INLINE void test_triangle(std::size_t t) {
@@ -181,27 +198,26 @@ class BeamRays {
   HWY_INLINE void occlude(std::size_t g, std::uint32_t rays) {
     beam_.occluded[g] = static_cast<std::uint16_t>(beam_.occluded[g] | rays);
     alive_[g] = static_cast<std::uint16_t>(alive_[g] & ~rays);
-    set_group_bounds(static_cast<std::uint32_t>(g));
+    if (alive_[g] != 0) return;
+    groups_ &= ~(1u << g);
     changed_ = true;
   }
 
-  void set_group_bounds(std::uint32_t g) {
-    constexpr float kInfinity = std::numeric_limits<float>::infinity();
-    float u0 = kInfinity, u1 = -kInfinity, v0 = kInfinity, v1 = -kInfinity, w = kInfinity;
-    for (std::uint32_t rays = alive_[g]; rays != 0; rays &= rays - 1) {
-      const std::uint32_t i = g * kBeamGroup + static_cast<std::uint32_t>(__builtin_ctz(rays));
-      u0 = std::min(u0, beam_.u[i]);
-      u1 = std::max(u1, beam_.u[i]);
-      v0 = std::min(v0, beam_.v[i]);
-      v1 = std::max(v1, beam_.v[i]);
-      w = std::min(w, beam_.w[i]);
-    }
-    group_u0_[g] = u0;
-    group_u1_[g] = u1;
-    group_v0_[g] = v0;
-    group_v1_[g] = v1;
-    group_w_[g] = w;
-    groups_ = alive_[g] != 0 ? groups_ | 1u << g : groups_ & ~(1u << g);
+  struct Least {
+    static HWY_INLINE FloatVec of(FloatVec a, FloatVec b) { return hn::Min(a, b); }
+    static HWY_INLINE FloatVec of_lanes(FloatVec a) { return hn::MinOfLanes(FloatTag(), a); }
+  };
+  struct Largest {
+    static HWY_INLINE FloatVec of(FloatVec a, FloatVec b) { return hn::Max(a, b); }
+    static HWY_INLINE FloatVec of_lanes(FloatVec a) { return hn::MaxOfLanes(FloatTag(), a); }
+  };
+  template <class Which>
+  static HWY_INLINE float over_group(const float* values) {
+    const FloatTag d;
+    auto result = hn::Load(d, values);
+    for (std::size_t i = hn::Lanes(d); i < kBeamGroup; i += hn::Lanes(d))
+      result = Which::of(result, hn::Load(d, values + i));
+    return hn::GetLane(Which::of_lanes(result));
   }
 
   void set_bounds() {
@@ -223,6 +239,7 @@ class BeamRays {
   std::uint32_t groups_ = 0;  ///< with rays that are left
   std::uint32_t version_ = 0;
   bool changed_ = false;
+  // Of groups that have rays.
   std::uint16_t alive_[kBeamGroups];
   alignas(64) float group_u0_[kBeamGroups];
   alignas(64) float group_u1_[kBeamGroups];

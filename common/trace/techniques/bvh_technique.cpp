@@ -37,15 +37,16 @@ void BvhTechnique::trace(const TileRays& tile, TileHits& hits, TileScratch& scra
 void BvhTechnique::prepare_occlusion() {
   if (!bvh_.nodes.empty())
     beam_space_ = make_beam_space(Affine3d{}, bvh_.nodes[0].box(), mesh_bounds_);
+  posed_blocks_.begin_frame(blocks_.size());
 }
 
 void BvhTechnique::occlude(RayBeam& beam, TileScratch&) const {
-  occlude_beam_bvh({bvh_.nodes, 0, &beam_space_}, {blocks_, positions_}, beam);
+  occlude_beam_bvh({bvh_.nodes, 0, &beam_space_}, {blocks_, positions_, &posed_blocks_}, beam);
 }
 
 std::size_t BvhTechnique::structure_bytes() const {
   return bvh_.bytes() + boxes_.size() * sizeof(Aabb) + blocks_.size() * sizeof(TriangleBlock) +
-         cache_.bytes();
+         cache_.bytes() + posed_blocks_.bytes();
 }
 
 }  // namespace mdk

@@ -42,6 +42,7 @@ class BvhTechnique : public Technique {
   Aabb mesh_bounds_;  ///< at all times
   BvhView view_{};
   BeamSpace beam_space_;
+  mutable PosedBlockCache posed_blocks_;
   mutable ProjectionCache cache_;
 };
 

@@ -44,17 +44,19 @@ void ClusterBvhTechnique::prepare_occlusion() {
   }
   if (!top_.nodes.empty())
     beam_spaces_[count] = make_beam_space(Affine3d{}, top_.nodes[0].box(), model_.bounds);
+  posed_blocks_.begin_frame(present_->blocks.size());
 }
 
 void ClusterBvhTechnique::occlude(RayBeam& beam, TileScratch&) const {
   const BeamBvh top{top_.nodes, 0, &beam_spaces_.back()};
   occlude_beam_two_level_bvh({top, top_.box_of_leaf, beam_clusters_},
-                             {present_->blocks, positions_}, beam);
+                             {present_->blocks, positions_, &posed_blocks_}, beam);
 }
 
 std::size_t ClusterBvhTechnique::structure_bytes() const {
-  return top_.bytes() + cache_.bytes() + model_.local_from_world.size_bytes() +
-         model_.cluster_world_boxes.size_bytes() + tree_bytes();
+  return top_.bytes() + cache_.bytes() + posed_blocks_.bytes() +
+         model_.local_from_world.size_bytes() + model_.cluster_world_boxes.size_bytes() +
+         tree_bytes();
 }
 
 }  // namespace mdk

@@ -60,7 +60,11 @@ ModelBench bench_file(const std::string& path, const BenchArguments& arguments,
   config.camera = choose_camera(arguments.view, model.bounds, size);
   config.width = size.width;
   config.height = size.height;
-  config.shading = find_shading(arguments.view.shading);
+  FrameRequest shading;
+  choose_shading(arguments.view, shading);
+  config.shading = shading.shading;
+  config.samples = shading.samples;
+  config.occlusion_rays = shading.occlusion_rays;
   config.rounds = parse_count("--rounds", arguments.rounds, kRoundRange);
   config.judged = parse_judged(arguments.judge);
   ModelBench result{path, model.triangle_count(), model.key_count(), model.cluster_count(), {}, {}};
@@ -73,7 +77,8 @@ ModelBench bench_file(const std::string& path, const BenchArguments& arguments,
 void check_words(const BenchArguments& arguments) {
   parse_image_size(arguments.view.size);
   if (!arguments.view.camera.empty()) parse_camera(arguments.view.camera);
-  find_shading(arguments.view.shading);
+  FrameRequest probe;
+  choose_shading(arguments.view, probe);
   parse_techniques(arguments.techniques);
   parse_count("--frames", arguments.frames, kFrameRange);
   parse_count("--rounds", arguments.rounds, kRoundRange);
@@ -90,6 +95,9 @@ std::string command_line(const BenchArguments& arguments) {
           arguments.judge + " --threads " + arguments.machine.threads;
   if (arguments.machine.isa != "best") line += " --isa " + arguments.machine.isa;
   if (arguments.view.shading != "diffuse") line += " --shading " + arguments.view.shading;
+  if (arguments.view.samples != "1") line += " --samples " + arguments.view.samples;
+  if (arguments.view.occlusion_rays != ViewOptions().occlusion_rays)
+    line += " --ao " + arguments.view.occlusion_rays;
   if (!arguments.view.camera.empty()) line += " --camera \"" + arguments.view.camera + "\"";
   return line;
 }

@@ -24,6 +24,8 @@ FrameRequest request_of(const BenchConfig& config, std::uint32_t key) {
   request.width = config.width;
   request.height = config.height;
   request.shading = config.shading;
+  request.samples = config.samples;
+  request.occlusion_rays = config.occlusion_rays;
   return request;
 }
 

@@ -29,6 +29,7 @@ struct BenchConfig {
   Camera camera;
   std::uint32_t width = 512, height = 512;
   ShadingMode shading = ShadingMode::kDiffuse;
+  std::uint32_t samples = 1, occlusion_rays = kOcclusionRays;
   std::uint32_t rounds = 3;            ///< at least one
   std::uint32_t judged = 0xffffffffu;  ///< how many of the keys brute force judges
 };
