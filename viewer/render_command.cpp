@@ -53,6 +53,10 @@ std::string render_command(const RenderJob& job, const std::string& path, const 
   line += " --size " + std::to_string(job.request.width) + "x" + std::to_string(job.request.height);
   line += " --technique " + std::string(technique_table()[job.technique].id);
   line += " --shading " + shading_id(job.request.shading);
+  if (job.request.samples != FrameRequest().samples)
+    line += " --samples " + std::to_string(job.request.samples);
+  if (job.request.occlusion_rays != FrameRequest().occlusion_rays)
+    line += " --ao " + std::to_string(job.request.occlusion_rays);
   return line + " --camera '" + camera_text(job.request.camera) + "'";
 }
 

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/base/isa.h"
+#include "common/trace/shading.h"
 #include "common/trace/technique.h"
 #include "tests/cli/baked_sample.h"
 #include "tests/cli/program_run.h"
@@ -119,6 +120,54 @@ TEST_F(Render, ShadingAndCameraChangeThePicture) {
   EXPECT_FALSE(picture({"--frames", "20", "--shading", "clusters"}) == diffuse);
   const Picture away = picture({"--frames", "20", "--camera", "0 1 5 0 1 9 0 1 0 45"});
   EXPECT_EQ(away.drawn_pixels(), 0u);
+}
+
+TEST_F(Render, EveryShadingModeHasAPictureOfItsOwn) {
+  std::vector<Picture> pictures;
+  for (const ShadingInfo& mode : shading_table()) {
+    pictures.push_back(picture({"--frames", "20", "--shading", std::string(mode.id)}));
+    for (std::size_t i = 0; i + 1 < pictures.size(); ++i)
+      EXPECT_FALSE(pictures[i] == pictures.back()) << mode.id << " and " << shading_table()[i].id;
+  }
+}
+
+TEST_F(Render, OneSampleIsThePictureWithoutTheOptionAndMoreAreAnother) {
+  const Picture plain = picture({"--frames", "20"});
+  EXPECT_TRUE(picture({"--frames", "20", "--samples", "1"}) == plain);
+  const Picture smooth = picture({"--frames", "20", "--samples", "8"});
+  EXPECT_FALSE(smooth == plain);
+  EXPECT_FALSE(picture({"--frames", "20", "--samples", "8", "--shutter", "0.2"}) == smooth);
+  EXPECT_FALSE(picture({"--frames", "20", "--shading", "lit", "--ao", "0"}) ==
+               picture({"--frames", "20", "--shading", "lit"}));
+}
+
+TEST_F(Render, RefusesNumbersOfSamplesAndRaysThatCannotBe) {
+  for (const std::vector<std::string>& words : {std::vector<std::string>{"--samples", "0"},
+                                                {"--samples", "x"},
+                                                {"--ao", "-1"},
+                                                {"--ao", "100000"},
+                                                {"--shutter", "-1"},
+                                                {"--shutter", "soon"}}) {
+    std::vector<std::string> arguments = {"-o", folder_.file("no.png"), "--frames", "1"};
+    arguments.insert(arguments.end(), words.begin(), words.end());
+    const Outcome run = render(arguments);
+    EXPECT_EQ(run.status, 2) << words[0] << " " << words[1];
+    EXPECT_NE(run.err.find(words[0]), std::string::npos) << run.err;
+  }
+}
+
+TEST_F(Render, StatsSayWhatTheColoursOfAHeatMapMean) {
+  const auto row = [&](const std::string& shading) {
+    const Outcome run = render({"-o", folder_.file("h.png"), "--frames", "3", "--size", "64x64",
+                                "--shading", shading, "--stats", folder_.file("h.json"), "-q"});
+    EXPECT_EQ(run.status, 0) << run.err;
+    return Json(Json::parse(read_text(folder_.file("h.json")))["frames"][0]);
+  };
+  EXPECT_GT(row("tests")["heat_scale"]["top"], 0);
+  EXPECT_EQ(row("boxes")["heat_scale"]["unit"], "visits per ray");
+  EXPECT_EQ(row("residual")["heat_scale"]["unit"], "% of the diagonal");
+  EXPECT_FALSE(row("diffuse").contains("heat_scale"));
+  EXPECT_GT(row("lit")["light_rays"], 0);
 }
 
 TEST_F(Render, StatsHaveARowPerFrameWithTimesAndCounts) {
