@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Regenerates the pictures of README.md from the sample hand, at twice their size and shrunk for smooth
-# edges. Needs a build (./run build) and ImageMagick (package imagemagick).
+# Regenerates the pictures of README.md from the sample hand, with many samples or at twice their size
+# and shrunk, for smooth edges. Needs a build (./run build) and ImageMagick (package imagemagick).
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -22,9 +22,9 @@ done
 convert -delay 6 -loop 0 "$work"/pair_*.png -layers optimize -colors 128 docs/images/hand.gif
 
 # A strip through the clip "count".
-for shading in diffuse clusters; do
+for shading in lit clusters; do
   "$mdprep" render "$work/hand.mdk" -o "$work/strip_${shading}_####.png" --frames 66:166:20 \
-    --size 520x600 --shading "$shading" --camera "$camera" -q --progress never
-  convert "$work"/strip_${shading}_*.png -resize 50% +append "$work/row_$shading.png"
+    --size 260x300 --samples 64 --shading "$shading" --camera "$camera" -q --progress never
+  convert "$work"/strip_${shading}_*.png +append "$work/row_$shading.png"
 done
-convert "$work/row_diffuse.png" "$work/row_clusters.png" -append docs/images/strip.png
+convert "$work/row_lit.png" "$work/row_clusters.png" -append docs/images/strip.png
