@@ -50,7 +50,8 @@ HeatScale HeatMap::color_triangles(const PosedMesh& mesh) {
   const double last = static_cast<double>(palette_.size() - 1);
   for (std::size_t t = 0; t < residuals_.size(); ++t) {
     const double share = 100.0 * static_cast<double>(residuals_[t]) / scale.top;
-    triangle_colors_[t] = static_cast<std::uint32_t>(std::clamp(share, 0.0, 1.0) * last + 0.5);
+    triangle_colors_[t] =
+        static_cast<std::uint32_t>((share > 0 ? std::min(share, 1.0) : 0.0) * last + 0.5);
   }
   return scale;
 }
