@@ -13,7 +13,7 @@ namespace mdk {
 
 struct BoxGrowthOptions {
   std::uint32_t clusters = 0;       ///< exactly so many; 0: as many as pay
-  std::uint32_t limit = 64;         ///< most clusters without an exact count
+  std::uint32_t limit = 80;         ///< most clusters without an exact count
   double least_cut_gain = -0.1;     ///< a cut may cost a little at first: relaxation pays it back
   int leaps = 3;                    ///< doublings that may raise the cost before growth gives up
   double least_stage_gain = 0.005;  ///< share of the cost that a stage must save to go on

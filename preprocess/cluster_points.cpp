@@ -8,7 +8,7 @@ namespace {
 
 /// Maps of one cluster must not tumble from key to key in the directions in which it is thin, where
 /// only noise speaks: boxes hold between keys, too. So such directions follow the rigid motion.
-constexpr FitOptions kPointFit{.noise = 1e-7, .ridge = 2, .keep_orientation = true};
+constexpr FitOptions kPointFit{.noise = 1e-7, .ridge = 1, .keep_orientation = true};
 
 std::size_t padded(std::size_t n) { return (n + kSumLanes - 1) / kSumLanes * kSumLanes; }
 
