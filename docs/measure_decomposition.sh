@@ -230,7 +230,7 @@ $(rows '[($p.bake.triangles, $p.bake.keys, $p.bake.clusters, $o.bake.clusters | 
 
 ## Time and memory of a bake
 
-Of *auto*, in seconds, and the totals of *ours* and *paper*; timings of one run.
+Of *auto*, in seconds, and the totals of *ours* and *paper*; timings of one run, which other work on the machine lengthens.
 
 | model | read | decompose | build | write | total | total ours | total paper | peak memory | file |
 |---|---|---|---|---|---|---|---|---|---|
