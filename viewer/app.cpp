@@ -11,8 +11,10 @@
 #include "common/trace/technique.h"
 #include "formats/image_writer.h"
 #include "viewer/overlays.h"
+#include "viewer/picture_job.h"
 #include "viewer/picture_mouse.h"
 #include "viewer/picture_name.h"
+#include "viewer/pose_panel.h"
 #include "viewer/render_command.h"
 #include "viewer/state_report.h"
 #include "viewer/time_line.h"
@@ -36,9 +38,7 @@ App::App(const ViewerOptions& options)
       theme_(make_theme(window_.ui_scale(), window_.pixel_ratio())),
       loader_(&Window::wake),
       worker_(&Window::wake) {
-  if (!options_.technique.empty())
-    state_.settings.technique =
-        static_cast<std::size_t>(&find_technique(options_.technique) - technique_table().data());
+  if (!options_.technique.empty()) state_.settings.technique = technique_row(options_.technique);
   state_.settings.shading = options_.shading;
   state_.settings.samples = options_.samples;
   state_.settings.occlusion_rays = options_.occlusion_rays;
@@ -66,10 +66,12 @@ void App::show_loaded_scene() {
   window_.set_title(state_.file_name + " - mdview");
   if (scene->is_again) {
     state_.playback.set_clips(clip_times(state_.file->model()));
+    state_.hand = rest_pose_of(state_.file->model());
     show_notice("Loaded " + state_.file_name + " again: it has changed");
     return;
   }
   state_.playback = Playback(clip_times(state_.file->model()));
+  state_.hand = rest_pose_of(state_.file->model());
   blit_.clear();
   reset_view();
   apply_options();
@@ -256,17 +258,8 @@ RenderJob App::wanted_job() const {
   const PixelRect room = picture_pixels();
   const std::uint32_t divisor =
       picture_divisor(state_.settings.resolution, motion_, full_picture_ms_);
-  RenderJob job{state_.file, state_.settings.technique, {}};
-  job.request.at =
-      locate_time(state_.file->model(), static_cast<std::uint32_t>(state_.playback.clip()),
-                  state_.playback.time());
-  job.request.camera = state_.camera.camera();
-  job.request.width = std::max(1u, static_cast<std::uint32_t>(room.width) / divisor);
-  job.request.height = std::max(1u, static_cast<std::uint32_t>(room.height) / divisor);
-  job.request.shading = state_.settings.shading;
-  job.request.samples = state_.settings.samples;
-  job.request.occlusion_rays = state_.settings.occlusion_rays;
-  return job;
+  return picture_job(state_, std::max(1u, static_cast<std::uint32_t>(room.width) / divisor),
+                     std::max(1u, static_cast<std::uint32_t>(room.height) / divisor));
 }
 
 bool App::request_picture(Repeat repeat) {
@@ -337,6 +330,7 @@ void App::draw() {
   if (state_.panel == PanelMode::kShown) {
     draw_side_panel(places.side_panel, theme_, state_, result);
     draw_time_line(places.time_line, theme_, state_, result);
+    draw_pose_panel(places.picture, theme_, state_, result);
   }
   draw_overlays(places.picture, theme_, state_, result);
   result.widgets["picture"] = places.picture;
@@ -355,15 +349,17 @@ void App::draw() {
 }
 
 std::string App::render_command_of_picture() const {
-  if (!state_.file) return {};
+  if (!state_.file || state_.hand.active) return {};
   const Playback& playback = state_.playback;
   return render_command(wanted_job(), state_.path, playback.clips()[playback.clip()].name,
                         playback.time());
 }
 
 void App::copy_render_command() {
-  window_.set_clipboard(render_command_of_picture());
-  show_notice("Copied the mdprep command that renders this picture");
+  const std::string command = render_command_of_picture();
+  if (!command.empty()) window_.set_clipboard(command);
+  show_notice(command.empty() ? "No mdprep command makes this picture: it is posed by hand"
+                              : "Copied the mdprep command that renders this picture");
 }
 
 void App::save_picture() {

@@ -12,7 +12,7 @@ bool same_picture(const RenderJob& a, const RenderJob& b) {
          a.request.camera == b.request.camera && a.request.width == b.request.width &&
          a.request.height == b.request.height && a.request.shading == b.request.shading &&
          a.request.samples == b.request.samples &&
-         a.request.occlusion_rays == b.request.occlusion_rays;
+         a.request.occlusion_rays == b.request.occlusion_rays && a.pose == b.pose;
 }
 
 RenderWorker::RenderWorker(std::function<void()> on_finished)
@@ -73,7 +73,9 @@ FinishedFrame RenderWorker::render(RenderJob job) {
     }
     if (!renderer_) renderer_ = std::make_unique<Renderer>(open_file_->model(), id);
     if (renderer_->technique_id() != id) renderer_->set_technique(id);
-    frame.stats = renderer_->render(job.request);
+    FrameRequest request = job.request;
+    request.pose = job.pose ? &*job.pose : nullptr;
+    frame.stats = renderer_->render(request);
     frame.structure_bytes = renderer_->structure_bytes();
     frame.note = renderer_->technique_note();
     frame.heat = renderer_->heat_scale();

@@ -20,8 +20,9 @@ namespace mdk {
 /// A picture that is wanted: of which file, how, of what.
 struct RenderJob {
   std::shared_ptr<const MdkFile> file;
-  std::size_t technique = 0;  ///< row of technique_table()
-  FrameRequest request;
+  std::size_t technique = 0;         ///< row of technique_table()
+  FrameRequest request;              ///< its pose stays null
+  std::optional<SkeletonPose> pose;  ///< posed by hand: counts instead of request.at
 };
 
 /// Whether both ask for the same pixels by the same technique; counting does not matter.

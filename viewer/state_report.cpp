@@ -74,6 +74,16 @@ const char* resolution_id(Resolution resolution) {
   return "";
 }
 
+Json hand_json(const ViewState& state) {
+  if (!state.hand.active) return nullptr;
+  const SkeletonView& skeleton = state.model()->skeleton;
+  const Vec3d& turn = state.hand.pose.turns[state.hand.joint];
+  const std::uint32_t past = joint_past_limit(skeleton, state.hand.pose);
+  return {{"joint", joint_name(skeleton, state.hand.joint)},
+          {"turn_radians", {turn.x, turn.y, turn.z}},
+          {"past_limit", past == kNoParent ? Json() : Json(joint_name(skeleton, past))}};
+}
+
 }  // namespace
 
 std::string state_json(const ViewState& state, const WindowReport& window) {
@@ -92,6 +102,7 @@ std::string state_json(const ViewState& state, const WindowReport& window) {
   json["resolution"] = resolution_id(state.settings.resolution);
   json["counting"] = state.settings.count_work;
   json["camera"] = camera_json(state.camera.camera());
+  json["pose_by_hand"] = hand_json(state);
   json["frames_shown"] = window.frames_shown;
   json["window_draws"] = window.window_draws;
   json["last_frame"] = frame_json(state);

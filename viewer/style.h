@@ -35,6 +35,7 @@ inline constexpr ImU32 kDimColor = IM_COL32(139, 147, 163, 255);
 inline constexpr ImU32 kSunkenColor = IM_COL32(16, 18, 23, 255);
 inline constexpr ImU32 kLineColor = IM_COL32(255, 255, 255, 22);
 inline constexpr ImU32 kErrorColor = IM_COL32(122, 38, 44, 245);
+inline constexpr ImU32 kWarningColor = IM_COL32(240, 190, 90, 255);
 inline constexpr ImU32 kFloatingColor = IM_COL32(30, 33, 41, 245);
 
 }  // namespace mdk

@@ -11,6 +11,7 @@
 #include "common/trace/shading.h"
 #include "formats/mdk_view.h"
 #include "viewer/frame_history.h"
+#include "viewer/hand_pose.h"
 #include "viewer/layout.h"
 #include "viewer/orbit_camera.h"
 #include "viewer/playback.h"
@@ -64,6 +65,7 @@ struct ViewState {
   ViewSettings settings;
   Playback playback;
   OrbitCamera camera;
+  HandPose hand;  ///< of a file with a skeleton; inactive for others
 
   std::optional<FrameReport> last_frame;
   std::optional<WorkReport> last_work;

@@ -61,6 +61,8 @@ struct Skeleton {
 struct SkeletonPose {
   std::vector<Vec3d> turns;           ///< per joint, in its own axes: axis times angle in radians
   std::vector<float> target_weights;  ///< per morph target of the rig
+
+  bool operator==(const SkeletonPose&) const = default;
 };
 
 /// The rotation by |turn| radians about `turn`.
