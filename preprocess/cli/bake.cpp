@@ -1,7 +1,6 @@
 // mdprep bake: source in, one .mdk image out.
-#include <sys/resource.h>
-
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <iostream>
 #include <memory>
 
@@ -13,11 +12,13 @@
 #include "preprocess/cli/common_options.h"
 #include "preprocess/cli/depfile.h"
 #include "preprocess/cli/interrupt.h"
+#include "preprocess/cli/memory_limit.h"
 #include "preprocess/cli/number_text.h"
 #include "preprocess/cli/output_paths.h"
 #include "preprocess/cli/progress_bar.h"
 #include "preprocess/cli/source_reader.h"
 #include "preprocess/cli/text_file.h"
+#include "preprocess/cli/tool_version.h"
 #include "preprocess/pipeline.h"
 
 namespace mdk {
@@ -109,12 +110,6 @@ DecomposeOptions parse_decompose_options(const BakeArguments& arguments) {
   return options;
 }
 
-std::uint64_t peak_memory_bytes() {
-  rusage usage = {};
-  getrusage(RUSAGE_SELF, &usage);
-  return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;  // Linux counts in KiB
-}
-
 /// As on the command line.
 std::string joined_inputs(const BakeArguments& arguments) {
   std::string text = arguments.inputs.front();
@@ -151,7 +146,22 @@ void check_places(const BakeArguments& arguments) {
   if (!arguments.depfile.empty()) require_writable_place(arguments.depfile);
 }
 
-void run_bake(const BakeArguments& arguments) {
+/// Before any of the long work: what is certain to be needed once all keys are known. Decomposing
+/// takes tables of its own, at most as large as the keys.
+void require_memory(const BakeArguments& arguments, const PoseSequence& sequence,
+                    const MemoryLimit& limit) {
+  constexpr std::uint64_t kLargestTables = std::uint64_t{32} << 20;
+  const std::uint64_t keys = sequence.positions.size() * sizeof(Vec3f);
+  const std::uint64_t needed = peak_memory_bytes() + std::min(keys / 2, kLargestTables);
+  if (limit.bytes() == 0 || needed <= limit.bytes()) return;
+  throw Error(ErrorCode::kOverLimit,
+              joined_inputs(arguments) + ": " + grouped_text(sequence.key_count()) + " keys of " +
+                  grouped_text(sequence.vertex_count) + " vertices need at least " +
+                  bytes_text(needed) + ", --memory-limit " + arguments.machine.memory_limit +
+                  " is less; allow more, or bake fewer clips");
+}
+
+void run_bake(const BakeArguments& arguments, CommandContext& context) {
   const MachineLimits limits(arguments.machine);
   const DecomposeOptions options = parse_decompose_options(arguments);
   parse_source_options(arguments.source);
@@ -169,6 +179,7 @@ void run_bake(const BakeArguments& arguments) {
   ReadResult source = read_source(source_files, reading_options, reading);
   keep_inputs(arguments, source.dependencies);
   outcome.seconds.read = stage.lap();
+  require_memory(arguments, source.sequence, limits.memory());
 
   ProgressPart decomposing(progress, kReadUntil, kDecomposeUntil);
   const DecomposeResult result = decompose(std::move(source.sequence), options, decomposing);
@@ -178,13 +189,16 @@ void run_bake(const BakeArguments& arguments) {
   progress.report("write", kDecomposeUntil);
   stage.lap();
   const Model model = result.model.view();
-  outcome.file_bytes = write_mdk(model, arguments.output);
+  const MdkOrigin origin{tool_version(), context.options_hash};
+  outcome.file_bytes = write_mdk(model, arguments.output, {origin, context.overwrite});
   outcome.seconds.write = stage.lap();
   outcome.seconds.total = total.seconds();
   outcome.peak_memory_bytes = peak_memory_bytes();
 
-  if (!arguments.report.empty())
-    write_text_file(arguments.report, bake_report_json(model, result.stats, outcome));
+  context.inputs = source.dependencies;
+  context.outputs = {arguments.output};
+  context.report = bake_report_json(model, result.stats, outcome);
+  if (!arguments.report.empty()) write_text_file(arguments.report, context.report);
   if (!arguments.depfile.empty())
     write_text_file(arguments.depfile, depfile_text(arguments.output, source.dependencies));
   progress.clear();
@@ -280,7 +294,7 @@ CommandBody add_bake_command(CLI::App& command) {
       "  mdprep bake fox.glb -o fox.mdk --clips Walk,Run --fps 24 --stop 5\n"
       "  mdprep bake cow.obj cow.pc2 -o cow.mdk --fps 24\n"
       "  mdprep bake 'walk_####.obj' -o walk.mdk --fps 24");
-  return [arguments] { run_bake(*arguments); };
+  return [arguments](CommandContext& context) { run_bake(*arguments, context); };
 }
 
 }  // namespace mdk
