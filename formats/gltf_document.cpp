@@ -7,12 +7,15 @@
 #include <algorithm>
 #include <cmath>
 #include <exception>
+#include <map>
 #include <new>
 #include <utility>
 
 #include "common/base/error.h"
 #include "formats/gltf_accessor.h"
 #include "formats/gltf_checks.h"
+#include "formats/gltf_draco.h"
+#include "formats/gltf_meshopt.h"
 #include "formats/gltf_schema.h"
 
 namespace mdk::gltf {
@@ -97,13 +100,16 @@ tinygltf::Model parse(const Bytes& bytes, BufferFiles& files) {
 
 class Converter {
  public:
-  Converter(tinygltf::Model& model, Document& document) : model_(model), document_(document) {}
+  Converter(tinygltf::Model& model, const Compression& compression, Document& document)
+      : model_(model), compression_(compression), document_(document) {}
 
   void run() {
     for (tinygltf::Buffer& buffer : model_.buffers)
       document_.buffers.push_back(std::move(buffer.data));
+    decode_views();
     for (std::size_t i = 0; i < model_.accessors.size(); ++i) convert_accessor(i);
     for (std::size_t i = 0; i < model_.meshes.size(); ++i) convert_mesh(i);
+    decode_primitives();
     convert_nodes();
     for (const tinygltf::Skin& skin : model_.skins)
       document_.skins.push_back({skin.joints, skin.inverseBindMatrices});
@@ -119,9 +125,33 @@ class Converter {
   }
 
   std::span<const unsigned char> view_bytes(int view) const {
+    const auto decoded = decoded_views_.find(static_cast<std::size_t>(view));
+    if (decoded != decoded_views_.end()) return decoded->second;
     const tinygltf::BufferView& v = model_.bufferViews[static_cast<std::size_t>(view)];
-    return std::span<const unsigned char>(document_.buffers[static_cast<std::size_t>(v.buffer)])
-        .subspan(v.byteOffset, v.byteLength);
+    return range_bytes({static_cast<std::size_t>(v.buffer), v.byteOffset, v.byteLength});
+  }
+
+  std::span<const unsigned char> range_bytes(const ByteRange& range) const {
+    return std::span<const unsigned char>(document_.buffers[range.buffer])
+        .subspan(range.offset, range.size);
+  }
+
+  void decode_views() {
+    for (const MeshoptView& view : compression_.views) {
+      document_.decoded.push_back(decode_meshopt(view, range_bytes(view.data)));
+      if (document_.decoded.back().empty())
+        fail("buffer view", view.view, "has broken meshopt data");
+      decoded_views_[view.view] = document_.decoded.back();
+    }
+  }
+
+  /// Their index lists were hidden from tinygltf, which refuses those without a buffer view.
+  void decode_primitives() {
+    for (const DracoPrimitive& primitive : compression_.primitives) {
+      document_.meshes[primitive.mesh].primitives[primitive.primitive].indices =
+          static_cast<int>(primitive.indices);
+      decode_draco(primitive, range_bytes(primitive.data), document_);
+    }
   }
 
   ComponentType component_type(int type, std::size_t accessor) const {
@@ -369,7 +399,9 @@ class Converter {
   }
 
   tinygltf::Model& model_;
+  const Compression& compression_;
   Document& document_;
+  std::map<std::size_t, std::span<const unsigned char>> decoded_views_;
 };
 
 }  // namespace
@@ -381,14 +413,15 @@ void Notes::add(const std::string& sentence) {
 Document load_document(const std::string& path, Notes& notes) {
   Document document;
   document.path = path;
-  const Bytes bytes = read_whole_file(path);
+  Bytes bytes = read_whole_file(path);
   document.dependencies.push_back(path);
   const SchemaSummary schema = check_schema(path, json_text(path, bytes));
+  if (!schema.plain_json.empty()) bytes = with_json(bytes, schema.plain_json);
   for (const std::string& extension : schema.ignored_extensions)
     notes.add("the extension " + extension + " is left out");
   BufferFiles files{path, schema.external_buffers, document.dependencies, 0, nullptr};
   tinygltf::Model model = parse(bytes, files);
-  Converter(model, document).run();
+  Converter(model, schema.compression, document).run();
   return document;
 }
 

@@ -126,6 +126,8 @@ struct Document {
   std::string path;
   std::vector<Bytes> buffers;
   std::vector<Bytes> embedded_images;
+  std::vector<Bytes> decoded;     ///< buffer views and accessors that are compressed in the file
+  std::size_t decoded_bytes = 0;  ///< by Draco, so far
   std::vector<Accessor> accessors;
   std::vector<Mesh> meshes;
   std::vector<Node> nodes;

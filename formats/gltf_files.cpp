@@ -102,4 +102,19 @@ std::string_view json_text(const std::string& path, const Bytes& bytes) {
   return json;
 }
 
+Bytes with_json(const Bytes& bytes, std::string_view json) {
+  if (!is_glb(bytes)) return Bytes(json.begin(), json.end());
+  const std::size_t padded = (json.size() + 3) / 4 * 4;
+  const std::size_t old_end = 20 + little_endian_u32(bytes.data() + 12);
+  Bytes out(bytes.begin(), bytes.begin() + 20);
+  out.insert(out.end(), json.begin(), json.end());
+  out.resize(20 + padded, ' ');
+  out.insert(out.end(), bytes.begin() + static_cast<std::ptrdiff_t>(old_end), bytes.end());
+  const std::size_t sizes[] = {out.size(), padded};
+  for (std::size_t field = 0; field < 2; ++field)
+    for (std::size_t i = 0; i < 4; ++i)
+      out[8 + 4 * field + i] = static_cast<unsigned char>(sizes[field] >> (8 * i));
+  return out;
+}
+
 }  // namespace mdk::gltf

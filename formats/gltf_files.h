@@ -26,4 +26,7 @@ bool is_glb(const Bytes& bytes);
 /// where a .glb has no whole JSON chunk or is not version 2.
 std::string_view json_text(const std::string& path, const Bytes& bytes);
 
+/// The same file with another JSON; json_text() must have accepted it.
+Bytes with_json(const Bytes& bytes, std::string_view json);
+
 }  // namespace mdk::gltf

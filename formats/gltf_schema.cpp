@@ -9,15 +9,15 @@
 #include <nlohmann/json.hpp>
 
 #include "common/base/error.h"
+#include "formats/gltf_compression_check.h"
+#include "formats/gltf_draco.h"
+#include "formats/gltf_json_check.h"
+#include "formats/gltf_meshopt.h"
 
 namespace mdk::gltf {
 namespace {
 
-using Json = nlohmann::json;
-
 constexpr int kMaxNesting = 256;
-
-enum class Need { kOptional, kRequired };
 
 struct KnownExtension {
   std::string_view name;
@@ -31,14 +31,19 @@ constexpr std::array kKnownExtensions = {
     KnownExtension{"KHR_lights_punctual", ""},
     KnownExtension{"KHR_texture_basisu", ""},
     KnownExtension{"EXT_texture_webp", ""},
-    KnownExtension{"KHR_draco_mesh_compression", "export it again without Draco mesh compression"},
-    KnownExtension{"EXT_meshopt_compression", "export it again without meshopt compression"},
+    KnownExtension{"KHR_draco_mesh_compression",
+                   "build this where libdraco-dev is installed, or export it again without Draco"},
+    KnownExtension{"EXT_meshopt_compression",
+                   "build this where libmeshoptimizer-dev is installed, or export it again without "
+                   "meshopt compression"},
     KnownExtension{"EXT_mesh_gpu_instancing", "export it again with its instances as nodes"},
 };
 
 /// The KHR_materials_… family refines how a surface reflects light, never where it is.
 bool is_known(const std::string& name) {
   if (name.starts_with("KHR_materials_")) return true;
+  if (name == "KHR_draco_mesh_compression") return can_decode_draco();
+  if (name == "EXT_meshopt_compression") return can_decode_meshopt();
   const auto it = std::ranges::find(kKnownExtensions, name, &KnownExtension::name);
   return it != kKnownExtensions.end() && it->cure.empty();
 }
@@ -49,12 +54,12 @@ std::string cure_for(const std::string& name) {
                                       : "export it again without this extension";
 }
 
-class SchemaCheck {
+class SchemaCheck : private JsonCheck {
  public:
-  SchemaCheck(const std::string& file, const Json& root) : file_(file), root_(root) {}
+  using JsonCheck::JsonCheck;
 
   SchemaSummary run() {
-    if (!root_.is_object()) fail("the JSON", "is not an object");
+    if (!root().is_object()) fail("the JSON", "is not an object");
     asset();
     extensions();
     each("buffers", "buffer", &SchemaCheck::buffer);
@@ -69,100 +74,15 @@ class SchemaCheck {
     each("images", "image", &SchemaCheck::image);
     each("samplers", "sampler", &SchemaCheck::sampler);
     each("scenes", "scene", &SchemaCheck::scene);
-    index(root_, "the file", "scene", "scenes", Need::kOptional);
+    index(root(), "the file", "scene", "scenes", Need::kOptional);
     return std::move(summary_);
   }
 
  private:
   using Check = void (SchemaCheck::*)(const Json&, const std::string&);
 
-  [[noreturn]] void fail(const std::string& place, const std::string& sentence) const {
-    throw bad_input(file_, place + " " + sentence);
-  }
-
-  /// The member, or null where it is absent and may be.
-  const Json* member(const Json& o, const std::string& at, const char* key, Need need) const {
-    const auto it = o.find(key);
-    if (it != o.end()) return &*it;
-    if (need == Need::kRequired) fail(at, "has no \"" + std::string(key) + "\"");
-    return nullptr;
-  }
-
-  const Json* array(const Json& o, const std::string& at, const char* key, Need need) const {
-    const Json* a = member(o, at, key, need);
-    if (a && !a->is_array()) fail(at, "has a \"" + std::string(key) + "\" that is not a list");
-    return a;
-  }
-
-  const Json* object(const Json& o, const std::string& at, const char* key, Need need) const {
-    const Json* m = member(o, at, key, need);
-    if (m && !m->is_object()) fail(at, "has a \"" + std::string(key) + "\" that is not an object");
-    return m;
-  }
-
-  void string(const Json& o, const std::string& at, const char* key, Need need) const {
-    const Json* m = member(o, at, key, need);
-    if (m && !m->is_string()) fail(at, "has a \"" + std::string(key) + "\" that is not a string");
-  }
-
-  void boolean(const Json& o, const std::string& at, const char* key) const {
-    const Json* m = member(o, at, key, Need::kOptional);
-    if (m && !m->is_boolean()) fail(at, "has a \"" + std::string(key) + "\" that is not a boolean");
-  }
-
-  void number(const Json& o, const std::string& at, const char* key) const {
-    const Json* m = member(o, at, key, Need::kOptional);
-    if (m && !m->is_number()) fail(at, "has a \"" + std::string(key) + "\" that is not a number");
-  }
-
-  /// A whole number in [0, 2^53], or `absent`.
-  std::size_t size(const Json& o, const std::string& at, const char* key, Need need) const {
-    const Json* m = member(o, at, key, need);
-    if (!m) return 0;
-    if (!m->is_number_unsigned() || m->get<std::uint64_t>() > (std::uint64_t{1} << 53))
-      fail(at, "has a \"" + std::string(key) + "\" that is not a usable whole number");
-    return m->get<std::size_t>();
-  }
-
-  /// A whole number that an int holds, because tinygltf keeps it in one.
-  void small_size(const Json& o, const std::string& at, const char* key, Need need) const {
-    if (size(o, at, key, need) > std::size_t{std::numeric_limits<std::int32_t>::max()})
-      fail(at, "has a \"" + std::string(key) + "\" that is too large");
-  }
-
-  void index_value(const Json& value, const std::string& at, const char* key,
-                   const char* list) const {
-    const auto it = root_.find(list);
-    const std::size_t count = it != root_.end() && it->is_array() ? it->size() : 0;
-    if (!value.is_number_unsigned() || value.get<std::uint64_t>() >= count)
-      fail(at, "has a \"" + std::string(key) + "\" of " + value.dump().substr(0, 40) +
-                   ", which is none of the " + std::to_string(count) + " " + list);
-  }
-
-  void index(const Json& o, const std::string& at, const char* key, const char* list,
-             Need need) const {
-    if (const Json* m = member(o, at, key, need)) index_value(*m, at, key, list);
-  }
-
-  void indices(const Json& o, const std::string& at, const char* key, const char* list,
-               Need need) const {
-    if (const Json* a = array(o, at, key, need))
-      for (const Json& value : *a) index_value(value, at, key, list);
-  }
-
-  /// A list of `count` numbers (0: any count).
-  void numbers(const Json& o, const std::string& at, const char* key, std::size_t count) const {
-    const Json* a = array(o, at, key, Need::kOptional);
-    if (!a) return;
-    if (count != 0 && a->size() != count)
-      fail(at, "has a \"" + std::string(key) + "\" without " + std::to_string(count) + " numbers");
-    for (const Json& value : *a)
-      if (!value.is_number())
-        fail(at, "has a \"" + std::string(key) + "\" holding something that is not a number");
-  }
-
   void each(const char* list, const std::string& what, Check check) {
-    const Json* a = array(root_, "the file", list, Need::kOptional);
+    const Json* a = array(root(), "the file", list, Need::kOptional);
     if (!a) return;
     for (std::size_t i = 0; i < a->size(); ++i) {
       const std::string at = what + " " + std::to_string(i);
@@ -172,7 +92,7 @@ class SchemaCheck {
   }
 
   void asset() const {
-    const Json* a = object(root_, "the file", "asset", Need::kRequired);
+    const Json* a = object(root(), "the file", "asset", Need::kRequired);
     string(*a, "the asset", "version", Need::kRequired);
     const std::string version = (*a)["version"].get<std::string>();
     if (!version.starts_with("2."))
@@ -180,7 +100,7 @@ class SchemaCheck {
   }
 
   void extensions() {
-    if (const Json* required = array(root_, "the file", "extensionsRequired", Need::kOptional))
+    if (const Json* required = array(root(), "the file", "extensionsRequired", Need::kOptional))
       for (const Json& e : *required) {
         if (!e.is_string()) fail("the file", "has an \"extensionsRequired\" that is no string");
         const std::string name = e.get<std::string>();
@@ -188,7 +108,7 @@ class SchemaCheck {
           fail("the file",
                "needs the extension " + name + ", which is not supported; " + cure_for(name));
       }
-    if (const Json* used = array(root_, "the file", "extensionsUsed", Need::kOptional))
+    if (const Json* used = array(root(), "the file", "extensionsUsed", Need::kOptional))
       for (const Json& e : *used)
         if (e.is_string() && !is_known(e.get<std::string>()))
           summary_.ignored_extensions.push_back(e.get<std::string>());
@@ -203,7 +123,7 @@ class SchemaCheck {
     const std::string& uri = o["uri"].get_ref<const std::string&>();
     if (uri.empty()) fail(at, "has an empty uri");
     if (!uri.starts_with("data:")) {
-      summary_.external_buffers.push_back({uri, bytes});
+      summary_.external_buffers.push_back({buffer_bytes_.size() - 1, uri, bytes});
     } else if (!uri.starts_with("data:application/octet-stream;base64,") &&
                !uri.starts_with("data:application/gltf-buffer;base64,")) {
       fail(at, "has a data URI that is not base64 of application/octet-stream");
@@ -342,8 +262,6 @@ class SchemaCheck {
     indices(o, at, "nodes", "nodes", Need::kOptional);
   }
 
-  const std::string& file_;
-  const Json& root_;
   std::vector<std::size_t> buffer_bytes_;
   SchemaSummary summary_;
 };
@@ -380,7 +298,16 @@ SchemaSummary check_schema(const std::string& file, std::string_view json) {
   } catch (const Json::exception&) {
     throw bad_input(file, "the JSON holds a number that is out of range");
   }
-  return SchemaCheck(file, root).run();
+  SchemaSummary summary = SchemaCheck(file, root).run();
+  summary.compression = check_compression(file, root);
+  if (!summary.compression.is_used()) return summary;
+  hide_compression(summary.compression, root);
+  summary.plain_json = root.dump();
+  // What has no data is not looked for, either.
+  std::erase_if(summary.external_buffers, [&](const ExternalBuffer& buffer) {
+    return std::ranges::count(summary.compression.empty_buffers, buffer.number) > 0;
+  });
+  return summary;
 }
 
 }  // namespace mdk::gltf

@@ -8,9 +8,12 @@
 #include <string_view>
 #include <vector>
 
+#include "formats/gltf_compression.h"
+
 namespace mdk::gltf {
 
 struct ExternalBuffer {
+  std::size_t number = 0;
   std::string uri;  ///< as written, still percent-encoded
   std::size_t bytes = 0;
 };
@@ -18,6 +21,8 @@ struct ExternalBuffer {
 struct SchemaSummary {
   std::vector<ExternalBuffer> external_buffers;  ///< in the order of the file's buffers
   std::vector<std::string> ignored_extensions;   ///< used by the file, unknown here, not required
+  Compression compression;
+  std::string plain_json;  ///< what knows no compression is to read instead; empty: the file's own
 };
 
 /// Checks the JSON text of `file` (for messages). Afterwards every index is in range, every buffer
