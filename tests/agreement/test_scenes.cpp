@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <functional>
+#include <map>
 #include <numbers>
 #include <random>
 
@@ -54,6 +55,38 @@ PoseSequence bending_tube(std::uint32_t segments, std::uint32_t around, std::uin
     const float swell = 1 + 0.3f * static_cast<float>(std::sin(6 * phase + p.y));
     const Vec3f bent = turned({p.x * swell, p.y, p.z * swell}, bend);
     return Vec3f{bent.x + static_cast<float>(phase), bent.y, bent.z};
+  });
+  return s;
+}
+
+PoseSequence twisting_sphere(int levels, std::uint32_t keys) {
+  PoseSequence s;
+  std::vector<Vec3f> rest = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
+  for (std::uint32_t i = 0; i < 8; ++i) {
+    const std::uint32_t x = i & 1, y = 2 + (i >> 1 & 1), z = 4 + (i >> 2);
+    const bool is_even = (x + y + z) % 2 == 0;
+    s.triangles.push_back(is_even ? Triangle{{x, y, z}} : Triangle{{x, z, y}});
+  }
+  for (int level = 0; level < levels; ++level) {
+    std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> middles;
+    const auto middle = [&](std::uint32_t a, std::uint32_t b) {
+      const auto [at, is_new] =
+          middles.emplace(std::minmax(a, b), static_cast<std::uint32_t>(rest.size()));
+      if (is_new) rest.push_back(normalized(rest[a] + rest[b]));
+      return at->second;
+    };
+    std::vector<Triangle> finer;
+    for (const auto& [v] : s.triangles) {
+      const std::uint32_t ab = middle(v[0], v[1]), bc = middle(v[1], v[2]), ca = middle(v[2], v[0]);
+      for (const Triangle& t : {Triangle{{v[0], ab, ca}}, Triangle{{ab, v[1], bc}},
+                                Triangle{{ca, bc, v[2]}}, Triangle{{ab, bc, ca}}})
+        finer.push_back(t);
+    }
+    s.triangles = std::move(finer);
+  }
+  animate(s, keys, rest, [](const Vec3f& p, std::size_t, double phase) {
+    const Vec3f twisted = turned({p.x, p.z, p.y}, 2 * phase * p.y);
+    return Vec3f{twisted.x, twisted.z, twisted.y};
   });
   return s;
 }

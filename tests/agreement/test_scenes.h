@@ -17,6 +17,9 @@ struct NamedSequence {
 /// A tube of rings that bends, twists and swells: `segments` x `around` quads, closed ends.
 PoseSequence bending_tube(std::uint32_t segments, std::uint32_t around, std::uint32_t keys);
 
+/// A closed ball of 8 * 4^`levels` triangles that twists about the y axis.
+PoseSequence twisting_sphere(int levels, std::uint32_t keys);
+
 /// Free triangles of all shapes, slivers, points and duplicates among them, each on a path of its
 /// own; everything is scaled by `size` and moved by `offset` along x.
 PoseSequence random_triangles(std::uint32_t count, std::uint32_t keys, float size, float offset);
