@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "common/base/error.h"
-#include "formats/atomic_file.h"
 
 namespace mdk {
 namespace {
@@ -30,7 +29,7 @@ std::vector<png_byte> without_alpha(std::span<const std::uint32_t> pixels) {
 }  // namespace
 
 void write_png(const std::string& path, std::uint32_t width, std::uint32_t height,
-               std::span<const std::uint32_t> pixels) {
+               std::span<const std::uint32_t> pixels, Overwrite overwrite) {
   if (pixels.size() != std::uint64_t{width} * height) {
     throw std::logic_error("write_png: the pixels do not fill the picture");
   }
@@ -49,7 +48,7 @@ void write_png(const std::string& path, std::uint32_t width, std::uint32_t heigh
   if (done == 0) {
     throw io_error(path, std::string("cannot be encoded as PNG: ") + image.message);
   }
-  AtomicFile file(path);
+  AtomicFile file(path, overwrite);
   file.write(std::span(encoded).first(bytes));
   file.commit();
 }

@@ -33,10 +33,15 @@ struct FileHeader {
   std::uint16_t major_version = kMajorVersion, minor_version = kMinorVersion;
   std::uint64_t file_bytes = 0;
   std::uint32_t section_count = 0;
-  std::uint32_t reserved[7] = {};
+  std::uint16_t tool_version[3] = {};  ///< major, minor, patch
+  std::uint16_t reserved = 0;
+  std::uint32_t reserved_too = 0;
+  std::uint64_t options_hash = 0;
+  std::uint64_t reserved_last = 0;
   std::uint64_t checksum = 0;  ///< of all before it and the section table
 };
 static_assert(sizeof(FileHeader) == 64 && offsetof(FileHeader, checksum) == 56);
+static_assert(offsetof(FileHeader, tool_version) == 28 && offsetof(FileHeader, options_hash) == 40);
 
 struct SectionEntry {
   std::uint32_t id = 0;

@@ -75,9 +75,9 @@ std::string section_name(std::uint32_t id) {
 
 MdkSections::MdkSections(std::span<const std::byte> file, const std::string& path)
     : file_(file), path_(path) {
-  const FileHeader header = read_header();
-  read_table(header);
-  if (table_checksum(header, table_) != header.checksum) {
+  header_ = read_header();
+  read_table();
+  if (table_checksum(header_, table_) != header_.checksum) {
     throw bad_input(path_, "the checksum of its section table is wrong" + std::string(kDamaged));
   }
   for (const SectionEntry& entry : table_) check_entry(entry);
@@ -114,15 +114,15 @@ FileHeader MdkSections::read_header() const {
   return header;
 }
 
-void MdkSections::read_table(const FileHeader& header) {
-  const std::uint64_t room = (file_.size() - sizeof(header)) / sizeof(SectionEntry);
-  if (header.section_count == 0 || header.section_count > layout::kMaxSections ||
-      header.section_count > room) {
-    throw bad_input(path_, "its header speaks of " + std::to_string(header.section_count) +
+void MdkSections::read_table() {
+  const std::uint64_t room = (file_.size() - sizeof(header_)) / sizeof(SectionEntry);
+  if (header_.section_count == 0 || header_.section_count > layout::kMaxSections ||
+      header_.section_count > room) {
+    throw bad_input(path_, "its header speaks of " + std::to_string(header_.section_count) +
                                " sections" + kDamaged);
   }
-  table_.resize(header.section_count);
-  std::memcpy(table_.data(), file_.data() + sizeof(header), table_.size() * sizeof(SectionEntry));
+  table_.resize(header_.section_count);
+  std::memcpy(table_.data(), file_.data() + sizeof(header_), table_.size() * sizeof(SectionEntry));
 }
 
 void MdkSections::check_entry(const SectionEntry& entry) const {

@@ -29,6 +29,7 @@ class MdkSections {
   /// file needs is known. `path` is for the sentences. Throws Error (kBadInput).
   MdkSections(std::span<const std::byte> file, const std::string& path);
 
+  const layout::FileHeader& header() const { return header_; }
   const std::vector<layout::SectionEntry>& table() const { return table_; }
   std::span<const std::byte> content(const layout::SectionEntry& entry) const {
     return file_.subspan(entry.offset, entry.bytes());
@@ -47,11 +48,12 @@ class MdkSections {
   const layout::SectionEntry& only_entry(const layout::SectionKind& kind,
                                          std::uint32_t element_bytes) const;
   layout::FileHeader read_header() const;
-  void read_table(const layout::FileHeader& header);
+  void read_table();
   void check_entry(const layout::SectionEntry& entry) const;
 
   std::span<const std::byte> file_;
   std::string path_;
+  layout::FileHeader header_;
   std::vector<layout::SectionEntry> table_;
 };
 

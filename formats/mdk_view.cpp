@@ -1,6 +1,7 @@
 // Mapping, table, spans, check: after the constructor the model is as good as one made in memory.
 #include "formats/mdk_view.h"
 
+#include <array>
 #include <utility>
 
 #include "common/base/error.h"
@@ -99,6 +100,11 @@ MdkFile& MdkFile::operator=(MdkFile&&) noexcept = default;
 const Model& MdkFile::model() const { return state_->model; }
 const std::string& MdkFile::path() const { return state_->path; }
 std::uint64_t MdkFile::file_bytes() const { return state_->file.bytes().size(); }
+
+MdkOrigin MdkFile::origin() const {
+  const layout::FileHeader& header = state_->sections.header();
+  return {std::to_array(header.tool_version), header.options_hash};
+}
 
 std::vector<MdkSectionInfo> MdkFile::sections() const {
   std::vector<MdkSectionInfo> infos;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "common/motion/model.h"
+#include "formats/mdk_origin.h"
 
 namespace mdk {
 
@@ -31,10 +32,12 @@ class MdkFile {
   const Model& model() const;
   const std::string& path() const;
   std::uint64_t file_bytes() const;
+  /// What made it, where the file says so.
+  MdkOrigin origin() const;
   std::vector<MdkSectionInfo> sections() const;
 
-  /// Compares every section's contents with its stored checksum; throws Error (kBadInput) naming the
-  /// first one that differs. Reads the whole file.
+  /// Compares every section's contents with its stored checksum; throws Error (kBadInput) naming
+  /// the first one that differs. Reads the whole file.
   void verify_checksums() const;
 
  private:

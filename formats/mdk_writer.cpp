@@ -2,6 +2,7 @@
 // order.
 #include "formats/mdk_writer.h"
 
+#include <algorithm>
 #include <array>
 #include <cstring>
 #include <limits>
@@ -9,7 +10,6 @@
 #include <vector>
 
 #include "common/base/error.h"
-#include "formats/atomic_file.h"
 #include "formats/mdk_layout.h"
 #include "formats/mdk_sections.h"
 #include "formats/model_check.h"
@@ -97,7 +97,8 @@ void pad(AtomicFile& file, std::uint64_t written, std::uint64_t until) {
 
 }  // namespace
 
-std::uint64_t write_mdk(const Model& model, const std::string& path) {
+std::uint64_t write_mdk(const Model& model, const std::string& path,
+                        const MdkWriteOptions& options) {
   if (const std::string fault = find_inconsistency(model); !fault.empty()) {
     throw Error(ErrorCode::kInternal, path + ": not written, the model is inconsistent (" + fault +
                                           "): please report this as a bug");
@@ -107,11 +108,13 @@ std::uint64_t write_mdk(const Model& model, const std::string& path) {
   FileHeader header;
   header.file_bytes = place(sections);
   header.section_count = static_cast<std::uint32_t>(sections.size());
+  std::ranges::copy(options.origin.version, header.tool_version);
+  header.options_hash = options.origin.options_hash;
   std::vector<SectionEntry> table;
   for (const Section& section : sections) table.push_back(section.entry);
   header.checksum = table_checksum(header, table);
 
-  AtomicFile file(path);
+  AtomicFile file(path, options.overwrite);
   file.write(std::as_bytes(std::span(&header, 1)));
   file.write(std::as_bytes(std::span(table)));
   std::uint64_t written = sizeof(header) + table.size() * sizeof(SectionEntry);

@@ -7,6 +7,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <csignal>
 #include <filesystem>
 #include <optional>
@@ -135,6 +136,46 @@ TEST_F(AtomicFileTest, RefusesPathsThatCannotBeFiles) {
   refused(folder_.file(std::string(300, 'n')), "File name too long");
   refused("/dev/null", "not a regular file");
   EXPECT_THAT(folder_.names(), ElementsAre("out.bin"));
+}
+
+TEST_F(AtomicFileTest, LeavesAnOldFileOfTheSameContentAloneWhereAsked) {
+  const auto day_one = std::filesystem::file_time_type::clock::now() - std::chrono::hours(24);
+  for (const std::size_t size : {std::size_t{0}, std::size_t{5}, std::size_t{3'000'001}}) {
+    Bytes content(size, 7);
+    write_bytes(path_, content);
+    std::filesystem::last_write_time(path_, day_one);
+    const auto write = [&](Overwrite overwrite) {
+      AtomicFile file(path_, overwrite);
+      file.write(raw(content));
+      file.commit();
+      EXPECT_EQ(read_bytes(path_), content);
+      EXPECT_THAT(folder_.names(), ElementsAre("out.bin"));
+      return std::filesystem::last_write_time(path_);
+    };
+    EXPECT_EQ(write(Overwrite::kIfChanged), day_one) << size;
+    if (size > 0) {
+      content.back() ^= 1;
+      EXPECT_GT(write(Overwrite::kIfChanged), day_one) << size;
+      std::filesystem::last_write_time(path_, day_one);
+    }
+    EXPECT_GT(write(Overwrite::kAlways), day_one) << size;
+  }
+}
+
+TEST_F(AtomicFileTest, OnlyTemporariesWithoutALivingWriterAreRemoved) {
+  const std::string ours = folder_.file(".out.bin.tmp-4711-0");
+  write_bytes(ours, old_);
+  for (const char* other :
+       {".out.bin", ".tmp-1-1", ".a.tmp-1", ".a.tmp-x-1", ".a.tmp--1", "a.tmp-1-1"})
+    write_bytes(folder_.file(other), old_);
+  AtomicFile living(path_);
+  EXPECT_EQ(remove_abandoned_temporaries(folder_.path()), 1u);
+  EXPECT_FALSE(std::filesystem::exists(ours));
+  EXPECT_EQ(folder_.names().size(), 7u);
+  living.write(raw(new_));
+  living.commit();
+  EXPECT_EQ(read_bytes(path_), new_);
+  EXPECT_EQ(remove_abandoned_temporaries(folder_.file("none")), 0u);
 }
 
 TEST_F(AtomicFileTest, TakesTheLongestNameThereIs) {

@@ -89,6 +89,13 @@ void expect_same_model(const Model& mapped, const ModelStorage& original) {
   expect_same("texels", mapped.texels, look.texels);
 }
 
+TEST_F(MdkFileTest, TellsWhatMadeItWhereThatIsKnown) {
+  const MdkOrigin origin{{1, 20, 300}, 0x0123456789abcdefu};
+  write_mdk(sample_model().view(), path_, {.origin = origin});
+  EXPECT_EQ(MdkFile(path_).origin(), origin);
+  EXPECT_EQ(MdkFile(written(sample_model())).origin(), MdkOrigin{});
+}
+
 TEST_F(MdkFileTest, GivesBackEveryListAndNumber) {
   ModelStorage original = sample_model();
   original.rest_key = 2;
