@@ -1,6 +1,4 @@
 // mdprep bake: source in, one .mdk image out.
-#include <sys/resource.h>
-
 #include <CLI/CLI.hpp>
 #include <iostream>
 #include <memory>
@@ -13,11 +11,13 @@
 #include "preprocess/cli/common_options.h"
 #include "preprocess/cli/depfile.h"
 #include "preprocess/cli/interrupt.h"
+#include "preprocess/cli/memory_limit.h"
 #include "preprocess/cli/number_text.h"
 #include "preprocess/cli/output_paths.h"
 #include "preprocess/cli/progress_bar.h"
 #include "preprocess/cli/source_reader.h"
 #include "preprocess/cli/text_file.h"
+#include "preprocess/cli/tool_version.h"
 #include "preprocess/pipeline.h"
 
 namespace mdk {
@@ -109,12 +109,6 @@ DecomposeOptions parse_decompose_options(const BakeArguments& arguments) {
   return options;
 }
 
-std::uint64_t peak_memory_bytes() {
-  rusage usage = {};
-  getrusage(RUSAGE_SELF, &usage);
-  return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;  // Linux counts in KiB
-}
-
 /// As on the command line.
 std::string joined_inputs(const BakeArguments& arguments) {
   std::string text = arguments.inputs.front();
@@ -151,7 +145,7 @@ void check_places(const BakeArguments& arguments) {
   if (!arguments.depfile.empty()) require_writable_place(arguments.depfile);
 }
 
-void run_bake(const BakeArguments& arguments) {
+void run_bake(const BakeArguments& arguments, CommandContext& context) {
   const MachineLimits limits(arguments.machine);
   const DecomposeOptions options = parse_decompose_options(arguments);
   parse_source_options(arguments.source);
@@ -178,13 +172,16 @@ void run_bake(const BakeArguments& arguments) {
   progress.report("write", kDecomposeUntil);
   stage.lap();
   const Model model = result.model.view();
-  outcome.file_bytes = write_mdk(model, arguments.output);
+  const MdkOrigin origin{tool_version(), context.options_hash};
+  outcome.file_bytes = write_mdk(model, arguments.output, {origin, context.overwrite});
   outcome.seconds.write = stage.lap();
   outcome.seconds.total = total.seconds();
   outcome.peak_memory_bytes = peak_memory_bytes();
 
-  if (!arguments.report.empty())
-    write_text_file(arguments.report, bake_report_json(model, result.stats, outcome));
+  context.inputs = source.dependencies;
+  context.outputs = {arguments.output};
+  context.report = bake_report_json(model, result.stats, outcome);
+  if (!arguments.report.empty()) write_text_file(arguments.report, context.report);
   if (!arguments.depfile.empty())
     write_text_file(arguments.depfile, depfile_text(arguments.output, source.dependencies));
   progress.clear();
@@ -280,7 +277,7 @@ CommandBody add_bake_command(CLI::App& command) {
       "  mdprep bake fox.glb -o fox.mdk --clips Walk,Run --fps 24 --stop 5\n"
       "  mdprep bake cow.obj cow.pc2 -o cow.mdk --fps 24\n"
       "  mdprep bake 'walk_####.obj' -o walk.mdk --fps 24");
-  return [arguments] { run_bake(*arguments); };
+  return [arguments](CommandContext& context) { run_bake(*arguments, context); };
 }
 
 }  // namespace mdk

@@ -4,6 +4,8 @@
 
 #include <functional>
 
+#include "preprocess/cli/command_context.h"
+
 namespace CLI {
 class App;
 }
@@ -11,7 +13,7 @@ class App;
 namespace mdk {
 
 /// Runs a parsed subcommand. Throws Error, or Interrupted after Ctrl-C.
-using CommandBody = std::function<void()>;
+using CommandBody = std::function<void(CommandContext&)>;
 
 /// Each takes its own, freshly made subcommand.
 CommandBody add_bake_command(CLI::App& command);
@@ -19,5 +21,7 @@ CommandBody add_info_command(CLI::App& command);
 CommandBody add_verify_command(CLI::App& command);
 CommandBody add_render_command(CLI::App& command);
 CommandBody add_bench_command(CLI::App& command);
+CommandBody add_batch_command(CLI::App& command);
+CommandBody add_job_command(CLI::App& command);
 
 }  // namespace mdk

@@ -1,9 +1,11 @@
-// Options that mean the same in every subcommand: --threads and --isa, -q and --progress, -v.
+// Options that mean the same in every subcommand: --threads, --isa and --memory-limit, -q and
+// --progress, -v.
 #pragma once
 
 #include <string>
 
 #include "common/base/parallel.h"
+#include "preprocess/cli/memory_limit.h"
 #include "preprocess/cli/progress_bar.h"
 
 namespace CLI {
@@ -15,17 +17,19 @@ namespace mdk {
 struct MachineOptions {
   std::string threads = "all";
   std::string isa = "best";
+  std::string memory_limit = "none";
 };
 void add_machine_options(CLI::App& command, MachineOptions& options);
 
-/// Holds the process to the threads and the instruction set that were asked for while it lives.
-/// Throws Error (kUsage).
+/// Holds the process to the threads, the instruction set and the memory that were asked for while
+/// it lives. Throws Error: kUsage, or kOverLimit for memory that cannot be enough.
 class MachineLimits {
  public:
   explicit MachineLimits(const MachineOptions& options);
 
  private:
   ThreadLimit threads_;
+  MemoryLimit memory_;
 };
 
 struct MessageOptions {

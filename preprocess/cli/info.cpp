@@ -12,6 +12,7 @@
 #include "preprocess/cli/common_options.h"
 #include "preprocess/cli/number_text.h"
 #include "preprocess/cli/text_table.h"
+#include "preprocess/cli/tool_version.h"
 
 namespace mdk {
 namespace {
@@ -96,6 +97,8 @@ void print_json(const MdkFile& file, const InfoArguments& arguments) {
       {"schema", "mdprep-info/1"},
       {"file", file.path()},
       {"file_bytes", file.file_bytes()},
+      {"made_by", version_text(file.origin().version)},
+      {"options_hash", hash_text(file.origin().options_hash)},
       {"triangles", model.triangle_count()},
       {"vertices", model.vertex_count},
       {"keys", model.key_count()},
@@ -141,6 +144,11 @@ std::string textures_text(const Model& model) {
   return model.textures.empty() ? text : text + ")";
 }
 
+std::string origin_text(const MdkOrigin& origin) {
+  if (origin == MdkOrigin{}) return "not known";
+  return "mdprep " + version_text(origin.version) + ", options " + hash_text(origin.options_hash);
+}
+
 /// How many, and the keys of the first few.
 std::string segments_text(const Model& model) {
   constexpr std::uint32_t kShown = 8;
@@ -157,6 +165,7 @@ void print_facts(const MdkFile& file, const InfoArguments& arguments) {
   const Clip& rest_clip = model.clips[clip_of_key(model, model.rest_key)];
   TextTable facts(2);
   facts.add_row({"file", file.path() + " (" + bytes_text(file.file_bytes()) + ")"});
+  facts.add_row({"made by", origin_text(file.origin())});
   facts.add_row({"triangles", grouped_text(model.triangle_count())});
   facts.add_row({"vertices", grouped_text(model.vertex_count)});
   facts.add_row({"keys", grouped_text(model.key_count())});
@@ -228,7 +237,7 @@ CommandBody add_info_command(CLI::App& command) {
       "Example:\n"
       "  mdprep info hand.mdk\n"
       "  mdprep info hand.mdk --json --areas");
-  return [arguments] { run_info(*arguments); };
+  return [arguments](CommandContext&) { run_info(*arguments); };
 }
 
 }  // namespace mdk

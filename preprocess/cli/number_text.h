@@ -20,6 +20,10 @@ std::uint32_t parse_count(std::string_view option, std::string_view text, CountR
 /// The whole of `text` as a finite number; throws Error (kUsage) naming `option`.
 double parse_real(std::string_view option, std::string_view text);
 
+/// "1500000", "512M", "1.5G": bytes, or KiB, MiB, GiB, TiB as K, M, G, T; above 0. Throws Error
+/// (kUsage) naming `option`.
+std::uint64_t parse_size(std::string_view option, std::string_view text);
+
 /// The parts between separators, empty ones included.
 std::vector<std::string> split(std::string_view text, char separator);
 
@@ -28,6 +32,9 @@ std::string fixed_text(double value, int decimals);
 
 /// 1234567: "1,234,567".
 std::string grouped_text(std::uint64_t value);
+
+/// Sixteen hexadecimal digits.
+std::string hash_text(std::uint64_t hash);
 
 /// 3250585: "3.1 MiB".
 std::string bytes_text(std::uint64_t bytes);

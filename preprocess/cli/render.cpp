@@ -1,9 +1,10 @@
 // mdprep render: frames of a .mdk file to PNG, without a display.
 #include <CLI/CLI.hpp>
 #include <iostream>
+#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <set>
+#include <optional>
 #include <sstream>
 
 #include "common/base/error.h"
@@ -14,6 +15,7 @@
 #include "formats/mdk_view.h"
 #include "preprocess/cli/commands.h"
 #include "preprocess/cli/common_options.h"
+#include "preprocess/cli/film_writer.h"
 #include "preprocess/cli/interrupt.h"
 #include "preprocess/cli/key_range.h"
 #include "preprocess/cli/median.h"
@@ -90,13 +92,34 @@ double parse_shutter(const std::string& text) {
   return seconds;
 }
 
-/// Of all clips that are rendered, whole: the camera is the same for any choice of their keys.
-Aabb bounds_of(const Model& model, const std::vector<PlannedFrame>& frames) {
-  std::set<std::uint32_t> clips;
-  for (const PlannedFrame& frame : frames) clips.insert(frame.clip);
-  Aabb bounds;
-  for (const std::uint32_t clip : clips) bounds.extend(clip_bounds(model, clip));
-  return bounds;
+/// Each clip's own, for all of its keys: a frame is the same whatever range it is rendered in.
+class ClipCameras {
+ public:
+  ClipCameras(const Model& model, const ViewOptions& view, ImageSize size)
+      : model_(model), view_(view), size_(size) {}
+
+  const Camera& camera(std::uint32_t clip) {
+    const auto known = cameras_.find(clip);
+    if (known != cameras_.end()) return known->second;
+    return cameras_.emplace(clip, choose_camera(view_, clip_bounds(model_, clip), size_))
+        .first->second;
+  }
+
+ private:
+  const Model& model_;
+  const ViewOptions& view_;
+  ImageSize size_;
+  std::map<std::uint32_t, Camera> cameras_;
+};
+
+constexpr double kUsualRate = 30;
+
+/// That at which the film runs as long as the animation: of the frames of the first one's clip.
+double film_rate(const std::vector<PlannedFrame>& frames) {
+  std::size_t last = 0;
+  while (last + 1 < frames.size() && frames[last + 1].clip == frames[0].clip) ++last;
+  const double seconds = frames[last].seconds - frames[0].seconds;
+  return seconds > 0 ? static_cast<double>(last) / seconds : kUsualRate;
 }
 
 /// When each sample of a frame is taken, or nothing where all are taken at once.
@@ -140,14 +163,19 @@ std::string heat_text(const HeatScale& heat) {
 
 /// Renders and writes every frame; returns the rows of --stats.
 Json render_frames(const RenderArguments& arguments, const Model& model,
-                   const std::vector<PlannedFrame>& frames, ImageSize size) {
+                   const std::vector<PlannedFrame>& frames, Overwrite overwrite) {
+  const ImageSize size = parse_image_size(arguments.view.size);
   ProgressBar progress(std::cerr, progress_style(arguments.messages));
   Renderer renderer(model, arguments.technique);
   FrameRequest request;
-  request.camera = choose_camera(arguments.view, bounds_of(model, frames), size);
   request.width = size.width;
   request.height = size.height;
   choose_shading(arguments.view, request);
+
+  ClipCameras cameras(model, arguments.view, size);
+  std::optional<FilmWriter> film;
+  if (is_film(arguments.output))
+    film.emplace(arguments.output, FilmFormat{size, film_rate(frames)}, overwrite);
 
   Json rows = Json::array();
   for (std::size_t i = 0; i < frames.size(); ++i) {
@@ -155,11 +183,16 @@ Json render_frames(const RenderArguments& arguments, const Model& model,
     const std::vector<KeyInterval> moments = moments_of(model, frames[i], arguments, request);
     request.at = frames[i].at;
     request.shutter = moments;
+    request.camera = cameras.camera(frames[i].clip);
     request.counting = Counting::kOff;
     const FrameStats stats = renderer.render(request);
     const HeatScale heat = renderer.heat_scale();
     const std::string path = numbered_path(arguments.output, frames[i].at.key0);
-    write_png(path, size.width, size.height, renderer.pixels());
+    if (film) {
+      film->add(renderer.pixels());
+    } else {
+      write_png(path, size.width, size.height, renderer.pixels(), overwrite);
+    }
     if (arguments.messages.verbose) {
       progress.clear();
       std::cerr << "mdprep: " << path << ": " << fixed_text(stats.time_to_image_ms(), 2)
@@ -170,6 +203,7 @@ Json render_frames(const RenderArguments& arguments, const Model& model,
     rows.push_back(stats_row(model, frames[i], stats, counted));
     if (heat.top > 0) rows.back()["heat_scale"] = {{"top", heat.top}, {"unit", heat.unit}};
   }
+  if (film) film->finish();
   return rows;
 }
 
@@ -183,7 +217,7 @@ void print_summary(const RenderArguments& arguments, const Json& rows) {
 }
 
 void check_outputs(const RenderArguments& arguments, const std::vector<PlannedFrame>& frames) {
-  if (frames.size() > 1 && !has_number_place(arguments.output))
+  if (frames.size() > 1 && !has_number_place(arguments.output) && !is_film(arguments.output))
     throw Error(
         ErrorCode::kUsage,
         arguments.output + ": " + std::to_string(frames.size()) +
@@ -196,7 +230,7 @@ void check_outputs(const RenderArguments& arguments, const std::vector<PlannedFr
   if (!arguments.stats.empty()) require_writable_place(arguments.stats);
 }
 
-void run_render(const RenderArguments& arguments) {
+void run_render(const RenderArguments& arguments, CommandContext& context) {
   const MachineLimits limits(arguments.machine);
   progress_style(arguments.messages);  // refuse wrong words before any file is opened
   find_technique(arguments.technique);
@@ -211,7 +245,14 @@ void run_render(const RenderArguments& arguments) {
   const std::vector<PlannedFrame> frames = plan_frames(arguments, model);
   check_outputs(arguments, frames);
   defer_interrupts();
-  const Json rows = render_frames(arguments, model, frames, size);
+  const Json rows = render_frames(arguments, model, frames, context.overwrite);
+  context.inputs = {arguments.input};
+  if (is_film(arguments.output)) {
+    context.outputs = {arguments.output};
+  } else {
+    for (const PlannedFrame& frame : frames)
+      context.outputs.push_back(numbered_path(arguments.output, frame.at.key0));
+  }
   if (!arguments.stats.empty()) {
     const Json report = {{"schema", "mdprep-render/1"},
                          {"file", arguments.input},
@@ -262,7 +303,8 @@ CommandBody add_render_command(CLI::App& command) {
   command
       .add_option("-o,--output", arguments->output,
                   "The PNG to write. A run of # becomes the number of the key, padded with zeros;\n"
-                  "more than one frame needs it.")
+                  "more than one frame needs it. Or a film: a name that ends in .mp4, .mkv or\n"
+                  ".webm; needs the program ffmpeg.")
       ->required()
       ->type_name("out_####.png");
   add_frame_options(command, *arguments);
@@ -287,9 +329,10 @@ CommandBody add_render_command(CLI::App& command) {
   command.footer(
       "Example:\n"
       "  mdprep render hand.mdk -o hand_####.png --frames 0:29:2 --size 800x600\n"
+      "  mdprep render hand.mdk -o hand.mp4 --frames 0:60\n"
       "  mdprep render fox.mdk -o fox.png --clip Run --time 0.4 --camera \"0 80 250 0 40 0 0 1 0 "
       "45\"");
-  return [arguments] { run_render(*arguments); };
+  return [arguments](CommandContext& context) { run_render(*arguments, context); };
 }
 
 }  // namespace mdk

@@ -43,6 +43,7 @@ struct VerifyReport {
   std::uint64_t seed = 0;
   std::uint32_t samples = 0;
   std::uint64_t hit_mismatches = 0;
+  std::vector<std::string> sources;  ///< every file that was read for --source
 
   void add(const std::vector<CheckResult>& results) {
     checks.insert(checks.end(), results.begin(), results.end());
@@ -96,7 +97,9 @@ VerifyReport verify_file(const MdkFile& file, const VerifyArguments& arguments,
   if (!arguments.source_paths.empty()) {
     ProgressPart reading(progress, 0.95, 1);
     const Source source = find_source(arguments.source_paths);
-    report.add(check_source(model, read_source(source, arguments.source, reading).sequence));
+    ReadResult read = read_source(source, arguments.source, reading);
+    report.add(check_source(model, read.sequence));
+    report.sources = std::move(read.dependencies);
   }
   return report;
 }
@@ -132,7 +135,7 @@ void print_table(const VerifyReport& report) {
   }
 }
 
-void run_verify(const VerifyArguments& arguments) {
+void run_verify(const VerifyArguments& arguments, CommandContext& context) {
   const MachineLimits limits(arguments.machine);
   ProgressBar progress(std::cerr, progress_style(arguments.messages));
   parse_source_options(arguments.source);
@@ -144,6 +147,8 @@ void run_verify(const VerifyArguments& arguments) {
   const MdkFile file(arguments.input);
   const VerifyReport report = verify_file(file, arguments, progress);
   progress.clear();
+  context.inputs = {arguments.input};
+  context.inputs.insert(context.inputs.end(), report.sources.begin(), report.sources.end());
   if (arguments.json) {
     print_json(report, arguments.input);
   } else {
@@ -191,7 +196,7 @@ CommandBody add_verify_command(CLI::App& command) {
       "Example:\n"
       "  mdprep verify hand.mdk --source hand.glb\n"
       "  mdprep verify fox.mdk --samples 10000 --seed 7 --json");
-  return [arguments] { run_verify(*arguments); };
+  return [arguments](CommandContext& context) { run_verify(*arguments, context); };
 }
 
 }  // namespace mdk

@@ -3,6 +3,7 @@
 #include <png.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <cstring>
 #include <nlohmann/json.hpp>
 
@@ -112,6 +113,60 @@ TEST_F(Render, ShowsTheSamePixelsWithEveryTechniqueOfOursThreadCountAndInstructi
       EXPECT_TRUE(picture(way) == expected) << name;
     }
   }
+}
+
+TEST_F(Render, AFrameIsTheSameInAnyRange) {
+  const auto frames = [&](const std::string& range, const std::string& name) {
+    const Outcome run = render({"-o", folder_.file(name + "_##.png"), "--frames", range, "--size",
+                                "64x48", "-q", "--technique", "fuzzy-bvh"});
+    EXPECT_EQ(run.status, 0) << run.err;
+  };
+  frames("28:34", "long");  // the second clip starts at key 31
+  frames("29:30", "a");
+  frames("31:34:3", "b");
+  for (const auto& [name, keys] : {std::pair("a", "29"), {"a", "30"}, {"b", "31"}, {"b", "34"}})
+    EXPECT_TRUE(read_text(folder_.file(std::string(name) + "_" + keys + ".png")) ==
+                read_text(folder_.file(std::string("long_") + keys + ".png")))
+        << keys;
+}
+
+TEST_F(Render, EveryShadingIsTheSameOnAnyInstructionSetAndThreadCount) {
+  for (const ShadingInfo& shading : shading_table()) {
+    std::vector<std::string> options = {"--frames", "20", "--shading", std::string(shading.id)};
+    const Picture expected = picture(options);
+    for (const std::string_view isa : available_isas()) {
+      if (isa == "scalar") continue;
+      std::vector<std::string> with = options;
+      with.insert(with.end(), {"--isa", std::string(isa), "--threads", "1"});
+      EXPECT_TRUE(picture(with) == expected) << shading.id << " " << isa;
+    }
+  }
+}
+
+TEST_F(Render, AFilmHasEveryFrameAndTheSameBytesAgain) {
+  if (std::system("command -v ffmpeg ffprobe > /dev/null") != 0)
+    GTEST_SKIP() << "there is no ffmpeg";
+  const auto film = [&](const std::string& name) {
+    const Outcome run =
+        render({"-o", folder_.file(name), "--frames", "0:9", "--size", "63x47", "-q"});
+    EXPECT_EQ(run.status, 0) << run.err;
+    return read_text(folder_.file(name));
+  };
+  EXPECT_TRUE(film("a.mp4") == film("b.mp4"));
+  const std::string probe =
+      "ffprobe -v error -count_frames -select_streams v -show_entries "
+      "stream=nb_read_frames,r_frame_rate,width -of csv=p=0 '" +
+      folder_.file("a.mp4") + "' > '" + folder_.file("probe") + "'";
+  ASSERT_EQ(std::system(probe.c_str()), 0);
+  EXPECT_EQ(read_text(folder_.file("probe")), "64,30/1,10\n");
+}
+
+TEST_F(Render, WithoutFfmpegAFilmIsRefusedInASentence) {
+  const std::string line = "env PATH=/nowhere '" MDPREP_PATH "' render '" + baked() + "' -o '" +
+                           folder_.file("a.mp4") + "' -q 2> '" + folder_.file("err") + "'";
+  EXPECT_EQ(WEXITSTATUS(std::system(("/usr/bin/" + line).c_str())), 4);
+  EXPECT_THAT(read_text(folder_.file("err")), HasSubstr("needs the program ffmpeg"));
+  EXPECT_EQ(folder_.names(), std::vector<std::string>{"err"});
 }
 
 TEST_F(Render, ShadingAndCameraChangeThePicture) {

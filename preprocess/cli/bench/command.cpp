@@ -254,7 +254,7 @@ CommandBody add_bench_command(CLI::App& command) {
       "  mdprep bench hand.mdk --size 1024x1024 --threads 1 --json hand.json --html hand.html\n"
       "  mdprep bench *.mdk --techniques fuzzy-bvh,rebuild-bvh --frames 50\n"
       "  mdprep bench --compare old.json new.json");
-  return [arguments] { run_bench(*arguments); };
+  return [arguments](CommandContext&) { run_bench(*arguments); };
 }
 
 }  // namespace mdk

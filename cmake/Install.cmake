@@ -1,0 +1,43 @@
+# cmake --install: programs, manual pages and completion (component "tools"), and the library for
+# find_package(mdk) (component "dev"). Nothing in the prefix knows where the prefix is.
+include(GNUInstallDirs)
+include(CMakePackageConfigHelpers)
+
+install(TARGETS mdprep RUNTIME COMPONENT tools)
+if(MDK_BUILD_VIEWER)
+  install(TARGETS mdview RUNTIME COMPONENT tools)
+  set(MDK_VIEWER_PAGES ${PROJECT_SOURCE_DIR}/docs/man/mdview.1)
+endif()
+
+# gzip -n leaves name and time out: the same page gives the same bytes.
+find_program(GZIP_PROGRAM gzip REQUIRED)
+install(CODE "
+  file(GLOB pages ${MDK_MANUAL_DIR}/*.1 ${MDK_VIEWER_PAGES})
+  set(folder \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_MANDIR}/man1\")
+  foreach(page IN LISTS pages)
+    get_filename_component(name \${page} NAME)
+    message(STATUS \"Installing: \${folder}/\${name}.gz\")
+    file(MAKE_DIRECTORY \"\${folder}\")
+    execute_process(COMMAND ${GZIP_PROGRAM} -9nc \"\${page}\" OUTPUT_FILE \"\${folder}/\${name}.gz\"
+      COMMAND_ERROR_IS_FATAL ANY)
+  endforeach()" COMPONENT tools)
+install(FILES ${MDK_MANUAL_DIR}/mdprep.bash RENAME mdprep COMPONENT tools
+  DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
+
+set(MDK_CMAKE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/mdk)
+set_target_properties(mdk_defaults PROPERTIES EXPORT_NAME defaults)
+set_target_properties(mdk_trace PROPERTIES EXPORT_NAME tracing)
+set_target_properties(mdk_formats PROPERTIES EXPORT_NAME formats)
+install(TARGETS mdk_defaults mdk_trace mdk_formats EXPORT mdk
+  ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT dev)
+install(DIRECTORY common DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/mdk COMPONENT dev
+  FILES_MATCHING PATTERN "*.h")
+install(FILES formats/mdk_view.h formats/mdk_origin.h COMPONENT dev
+  DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/mdk/formats)
+install(EXPORT mdk NAMESPACE mdk:: FILE mdkTargets.cmake DESTINATION ${MDK_CMAKE_DIR} COMPONENT dev)
+configure_package_config_file(cmake/mdkConfig.cmake.in ${PROJECT_BINARY_DIR}/mdkConfig.cmake
+  INSTALL_DESTINATION ${MDK_CMAKE_DIR})
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/mdkConfigVersion.cmake
+  COMPATIBILITY SameMinorVersion)
+install(FILES ${PROJECT_BINARY_DIR}/mdkConfig.cmake ${PROJECT_BINARY_DIR}/mdkConfigVersion.cmake
+  DESTINATION ${MDK_CMAKE_DIR} COMPONENT dev)

@@ -1,0 +1,48 @@
+// JobRecord: what is known of a job after it ran, or since it started: one small JSON file a job
+// (mdprep-job/1, docs/farm.md).
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "preprocess/batch/file_state.h"
+
+namespace mdk {
+
+enum class JobStatus {
+  kStarted,  ///< and not ended: it runs, or it was killed
+  kDone,
+  kFailed,
+  kBlocked,  ///< did not run, since a job it needs did not succeed
+  kStopped,  ///< by SIGTERM or SIGINT
+};
+
+/// As in the file: "started", "done", "failed", "blocked", "stopped".
+std::string_view status_name(JobStatus status);
+
+struct JobRecord {
+  JobStatus status = JobStatus::kStarted;
+  std::vector<std::string> command;  ///< words after "mdprep"
+  std::string version;               ///< of mdprep
+  std::uint64_t program_hash = 0;    ///< XXH3 of the executable: another build, another result
+  std::uint64_t command_hash = 0;  ///< of the command, its files and the options that shape results
+  std::string host;
+  std::int64_t process = 0;
+  std::string task;  ///< the engine's own name for it, where it has one ("4711_12" in Slurm)
+  int exit_status = 0;
+  std::string reason;  ///< a sentence, where it did not succeed
+  double seconds = 0;
+  std::uint64_t peak_memory_bytes = 0;
+  std::vector<FileState> inputs, outputs;  ///< of a job that is done
+  std::string report;                      ///< the command's own JSON, or empty
+};
+
+std::string job_record_json(const JobRecord& record);
+
+/// None where there is no file, or one that is no record: cut, or written by hand.
+std::optional<JobRecord> read_job_record(const std::string& path);
+
+}  // namespace mdk

@@ -1,0 +1,181 @@
+// A job's identity is its command line without what no result depends on (threads, instruction set,
+// memory, messages). It is up to date when identity, program and the content of all files are what
+// the record says.
+#include "preprocess/batch/job_run.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+#include <exception>
+#include <filesystem>
+#include <set>
+#include <span>
+
+#include "common/base/error.h"
+#include "common/base/stopwatch.h"
+#include "formats/atomic_file.h"
+#include "formats/mdk_sections.h"
+#include "preprocess/batch/job_record.h"
+#include "preprocess/cli/command_line.h"
+#include "preprocess/cli/depfile.h"
+#include "preprocess/cli/failure.h"
+#include "preprocess/cli/interrupt.h"
+#include "preprocess/cli/memory_limit.h"
+#include "preprocess/cli/text_file.h"
+#include "preprocess/cli/tool_version.h"
+
+namespace mdk {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::uint64_t hash_of_text(const std::string& text) {
+  return checksum_of(std::as_bytes(std::span(text)));
+}
+
+std::string host_name() {
+  std::array<char, 256> name{};
+  gethostname(name.data(), name.size() - 1);
+  return name.data();
+}
+
+/// "4711_12" for task 12 of Slurm's array 4711.
+std::string task_name() {
+  const char* array = std::getenv("SLURM_ARRAY_JOB_ID");
+  const char* task = std::getenv("SLURM_ARRAY_TASK_ID");
+  return array != nullptr && task != nullptr ? std::string(array) + "_" + task : "";
+}
+
+JobRecord new_record(const JobRequest& request, const CommandLine& line) {
+  JobRecord record;
+  record.command = request.command;
+  record.version = version_text(tool_version());
+  record.program_hash = state_of_file("/proc/self/exe").hash;
+  record.command_hash = hash_of_text(line.name() + "\n" + line.option_text(OptionScope::kResults));
+  record.host = host_name();
+  record.process = getpid();
+  record.task = task_name();
+  return record;
+}
+
+bool is_up_to_date(const JobRecord& last, const JobRecord& now) {
+  return last.status == JobStatus::kDone && last.command_hash == now.command_hash &&
+         last.program_hash == now.program_hash && last.version == now.version &&
+         are_unchanged(last.inputs) && are_unchanged(last.outputs);
+}
+
+std::set<std::string> output_folders(const JobRequest& request) {
+  constexpr std::array<std::string_view, 2> kOutputOptions = {"-o", "--output"};
+  std::set<std::string> folders = {fs::path(request.record).parent_path().string()};
+  for (std::size_t i = 0; i + 1 < request.command.size(); ++i)
+    if (std::ranges::count(kOutputOptions, request.command[i]) > 0)
+      folders.insert(fs::path(request.command[i + 1]).parent_path().string());
+  if (!request.depfile.empty()) folders.insert(fs::path(request.depfile).parent_path().string());
+  folders.erase("");
+  return folders;
+}
+
+void make_folders(const std::set<std::string>& folders) {
+  for (const std::string& folder : folders) {
+    std::error_code problem;
+    fs::create_directories(folder, problem);
+    if (problem) throw io_error(folder, "cannot be made: " + problem.message());
+  }
+}
+
+void require_needed(const std::vector<std::string>& needs) {
+  for (const std::string& path : needs) {
+    const auto needed = read_job_record(path);
+    if (needed && needed->status == JobStatus::kDone) continue;
+    const std::string what = needed ? std::string(status_name(needed->status)) : "not there";
+    throw bad_input(path, "the job this one needs is " + what + "; see to that one first");
+  }
+}
+
+void write_depfile(const JobRequest& request, const JobRecord& record) {
+  if (request.depfile.empty()) return;
+  std::vector<std::string> names;
+  for (const FileState& input : record.inputs) names.push_back(input.path);
+  write_text_file(request.depfile, depfile_text(request.record, names));
+}
+
+/// Runs the command and fills in the rest of the record, whatever comes.
+void run_command(const CommandLine& line, JobRecord& record) {
+  const Stopwatch watch;
+  CommandContext context;
+  context.overwrite = Overwrite::kIfChanged;
+  line.run(context);
+  record.seconds = watch.seconds();
+  record.inputs = states_of_files(context.inputs);
+  record.outputs = states_of_files(context.outputs);
+  record.report = context.report;
+  record.status = JobStatus::kDone;
+}
+
+JobStatus status_of_failure(const std::exception_ptr& thrown) {
+  try {
+    std::rethrow_exception(thrown);
+  } catch (const Interrupted&) {
+    return JobStatus::kStopped;
+  } catch (...) {
+    return JobStatus::kFailed;
+  }
+}
+
+/// What `work` throws goes into the record before it goes on.
+template <class Work>
+void run_recorded(const std::string& path, JobRecord& record, Work work) {
+  const Stopwatch watch;
+  try {
+    work();
+  } catch (...) {
+    const Failure failure = describe_failure(std::current_exception());
+    if (record.status == JobStatus::kStarted)
+      record.status = status_of_failure(std::current_exception());
+    record.exit_status = failure.status;
+    record.reason = failure.sentence;
+    record.seconds = watch.seconds();
+    record.peak_memory_bytes = peak_memory_bytes();
+    write_text_file(path, job_record_json(record));
+    throw;
+  }
+}
+
+}  // namespace
+
+JobResult run_job(const JobRequest& request) {
+  CommandLine line;
+  if (!line.parse(request.command)) return JobResult::kRan;
+  if (line.name() != "bake" && line.name() != "verify" && line.name() != "render")
+    throw Error(ErrorCode::kUsage,
+                "mdprep job: " + line.name() + " is no job; give a bake, a verify or a render");
+  const std::set<std::string> folders = output_folders(request);
+  make_folders(folders);
+  JobRecord record = new_record(request, line);
+  run_recorded(request.record, record, [&] {
+    record.status = JobStatus::kBlocked;
+    require_needed(request.needs);
+    record.status = JobStatus::kStarted;
+  });
+
+  const auto last = read_job_record(request.record);
+  if (last && is_up_to_date(*last, record)) {
+    write_depfile(request, *last);
+    std::error_code ignored;  // for make, which asks for a newer time stamp than the inputs'
+    fs::last_write_time(request.record, fs::file_time_type::clock::now(), ignored);
+    return JobResult::kUpToDate;
+  }
+  if (last && last->status == JobStatus::kStarted)
+    for (const std::string& folder : folders) remove_abandoned_temporaries(folder);
+
+  write_text_file(request.record, job_record_json(record));
+  run_recorded(request.record, record, [&] { run_command(line, record); });
+  record.peak_memory_bytes = peak_memory_bytes();
+  write_depfile(request, record);
+  write_text_file(request.record, job_record_json(record));
+  return JobResult::kRan;
+}
+
+}  // namespace mdk

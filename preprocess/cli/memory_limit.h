@@ -1,0 +1,34 @@
+// MemoryLimit: holds the process to an amount of memory, so that a job that needs more says so
+// instead of pushing its neighbours out.
+#pragma once
+
+#include <sys/resource.h>
+
+#include <cstdint>
+#include <string>
+
+namespace mdk {
+
+/// While it lives, an allocation past the limit throws std::bad_alloc. Counted are the program
+/// itself and what it allocates; files that are mapped, which the system may drop, are not.
+class MemoryLimit {
+ public:
+  /// "none", or a size (parse_size). Throws Error: kUsage, or kOverLimit where the program itself
+  /// does not fit.
+  explicit MemoryLimit(const std::string& text);
+  ~MemoryLimit();
+  MemoryLimit(const MemoryLimit&) = delete;
+  MemoryLimit& operator=(const MemoryLimit&) = delete;
+
+  /// 0: no limit.
+  std::uint64_t bytes() const { return bytes_; }
+
+ private:
+  std::uint64_t bytes_ = 0;
+  rlimit before_ = {};
+};
+
+/// The most memory this process ever had resident.
+std::uint64_t peak_memory_bytes();
+
+}  // namespace mdk
