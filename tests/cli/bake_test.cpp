@@ -130,6 +130,9 @@ TEST_F(Bake, ProgressAndSummaryGoToStderrAlone) {
       run_mdprep({"bake", source(), "-o", folder_.file("a.mdk"), "--progress", "always"});
   EXPECT_EQ(bar.out, "");
   EXPECT_THAT(bar.err, HasSubstr("\r"));
+  const Outcome lines =
+      run_mdprep({"bake", source(), "-o", folder_.file("a.mdk"), "--progress", "plain"});
+  EXPECT_THAT(lines.err, testing::Not(HasSubstr("\r")));
   const Outcome never =
       run_mdprep({"bake", source(), "-o", folder_.file("a.mdk"), "--progress", "never"});
   EXPECT_THAT(never.err, testing::Not(HasSubstr(" %  ")));

@@ -95,6 +95,7 @@ TEST_F(CommandLine, WrongUseIsStatus2AndOneSentence) {
       {"bake", source(), "-o", out("x.mdk"), "--threads", "0"},
       {"bake", source(), "-o", out("x.mdk"), "--isa", "mmx"},
       {"bake", source(), "-o", out("x.mdk"), "--progress", "loud"},
+      {"bake", source(), "-o", out("x.mdk"), "--memory-limit", "much"},
       {"bake", source(), "-o", out("x.mdk"), "-q", "-v"},
       {"info", baked(), "--xml"},
       {"info", baked(), "--threads", "many"},
@@ -176,6 +177,16 @@ TEST_F(CommandLine, ContentThatCannotBeUsedIsStatus3) {
     expect_refused({"bench", "--from", out(name), "--html", out("x.html")}, 3);
   }
   EXPECT_EQ(folder_.names(), before);
+}
+
+TEST_F(CommandLine, TooLittleMemoryIsStatus5) {
+  for (const char* limit : {"1M", "10M"})
+    expect_refused({"bake", source(), "-o", out("x.mdk"), "--memory-limit", limit}, 5);
+  expect_refused({"render", baked(), "-o", out("x.png"), "--frames", "0", "--size", "8000x8000",
+                  "--memory-limit", "100M", "--progress", "never"},
+                 5);
+  EXPECT_EQ(folder_.names(), std::vector<std::string>{});
+  EXPECT_EQ(run_mdprep({"bake", source(), "-o", out("x.mdk"), "--memory-limit", "1G"}).status, 0);
 }
 
 TEST_F(CommandLine, APictureTooLargeIsStatus5) {

@@ -16,6 +16,21 @@ using Json = nlohmann::json;
 
 class Info : public BakedSample {};
 
+TEST_F(Info, TheHashOfOptionsTellsFilesApartExactlyWhereOptionsDo) {
+  const auto hash_with = [&](std::vector<std::string> options) {
+    options.insert(options.begin(), {"bake", source(), "-o", folder_.file("x.mdk"), "-q"});
+    EXPECT_EQ(run_mdprep(options).status, 0);
+    const Outcome info = run_mdprep({"info", folder_.file("x.mdk"), "--json"});
+    return Json::parse(info.out)["options_hash"].get<std::string>();
+  };
+  const std::string usual = hash_with({});
+  EXPECT_EQ(usual.size(), 16u);
+  EXPECT_EQ(hash_with({"--fps", "30.0", "--threads", "1"}), usual);
+  EXPECT_NE(hash_with({"--fps", "15"}), usual);
+  EXPECT_NE(hash_with({"--refine", "off"}), usual);
+  EXPECT_THAT(run_mdprep({"info", baked()}).out, HasSubstr("options " + usual));
+}
+
 TEST_F(Info, JsonTellsWhatWasBaked) {
   const Outcome run = run_mdprep({"info", baked(), "--json"});
   ASSERT_EQ(run.status, 0) << run.err;
@@ -23,6 +38,7 @@ TEST_F(Info, JsonTellsWhatWasBaked) {
   const Json info = Json::parse(run.out);
   EXPECT_EQ(info["schema"], "mdprep-info/1");
   EXPECT_EQ(info["file"], baked());
+  EXPECT_EQ("mdprep " + info["made_by"].get<std::string>() + "\n", run_mdprep({"--version"}).out);
   EXPECT_EQ(info["triangles"], TubeShape{}.triangles());
   EXPECT_EQ(info["vertices"], 13 * 16 + 8);
   EXPECT_EQ(info["keys"], kSampleKeys);

@@ -26,6 +26,15 @@ TEST(NumberText, AFailedCountNamesOptionValueAndRange) {
   }
 }
 
+TEST(NumberText, SizesTakeBinaryUnits) {
+  EXPECT_EQ(parse_size("--m", "1"), 1u);
+  EXPECT_EQ(parse_size("--m", "1500000"), 1500000u);
+  EXPECT_EQ(parse_size("--m", "512M"), std::uint64_t{512} << 20);
+  EXPECT_EQ(parse_size("--m", "1.5G"), std::uint64_t{3} << 29);
+  for (const char* wrong : {"", "0", "-1", "M", "1m", "1 G", "1GB", "inf", "nan", "1e30T", "none"})
+    EXPECT_THROW(parse_size("--m", wrong), Error) << wrong;
+}
+
 TEST(NumberText, RealsAreWholeWordsAndFinite) {
   EXPECT_EQ(parse_real("--x", "0.5"), 0.5);
   EXPECT_EQ(parse_real("--x", "-2e-3"), -2e-3);
