@@ -20,7 +20,7 @@ table{border-collapse:collapse;width:100%}
 th,td{text-align:left;padding:.25rem .6rem;border-bottom:1px solid var(--line);vertical-align:top}
 td.n,th.n{text-align:right;font-variant-numeric:tabular-nums;white-space:nowrap}
 td.path{font-family:ui-monospace,monospace;font-size:.85rem;overflow-wrap:anywhere}
-.bar{display:block;height:.5rem;background:var(--bar);border-radius:.25rem;min-width:1px}
+.bar{display:block;height:.5rem;margin-top:.5rem;background:var(--bar);border-radius:.25rem;min-width:1px}
 .bad{color:var(--bad);font-weight:600}.good{color:var(--good)}
 )";
 

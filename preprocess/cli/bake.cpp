@@ -1,5 +1,6 @@
 // mdprep bake: source in, one .mdk image out.
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <iostream>
 #include <memory>
 
@@ -145,6 +146,21 @@ void check_places(const BakeArguments& arguments) {
   if (!arguments.depfile.empty()) require_writable_place(arguments.depfile);
 }
 
+/// Before any of the long work: what is certain to be needed once all keys are known. Decomposing
+/// takes tables of its own, at most as large as the keys.
+void require_memory(const BakeArguments& arguments, const PoseSequence& sequence,
+                    const MemoryLimit& limit) {
+  constexpr std::uint64_t kLargestTables = std::uint64_t{32} << 20;
+  const std::uint64_t keys = sequence.positions.size() * sizeof(Vec3f);
+  const std::uint64_t needed = peak_memory_bytes() + std::min(keys / 2, kLargestTables);
+  if (limit.bytes() == 0 || needed <= limit.bytes()) return;
+  throw Error(ErrorCode::kOverLimit,
+              joined_inputs(arguments) + ": " + grouped_text(sequence.key_count()) + " keys of " +
+                  grouped_text(sequence.vertex_count) + " vertices need at least " +
+                  bytes_text(needed) + ", --memory-limit " + arguments.machine.memory_limit +
+                  " is less; allow more, or bake fewer clips");
+}
+
 void run_bake(const BakeArguments& arguments, CommandContext& context) {
   const MachineLimits limits(arguments.machine);
   const DecomposeOptions options = parse_decompose_options(arguments);
@@ -163,6 +179,7 @@ void run_bake(const BakeArguments& arguments, CommandContext& context) {
   ReadResult source = read_source(source_files, reading_options, reading);
   keep_inputs(arguments, source.dependencies);
   outcome.seconds.read = stage.lap();
+  require_memory(arguments, source.sequence, limits.memory());
 
   ProgressPart decomposing(progress, kReadUntil, kDecomposeUntil);
   const DecomposeResult result = decompose(std::move(source.sequence), options, decomposing);

@@ -26,6 +26,7 @@ void add_machine_options(CLI::App& command, MachineOptions& options);
 class MachineLimits {
  public:
   explicit MachineLimits(const MachineOptions& options);
+  const MemoryLimit& memory() const { return memory_; }
 
  private:
   ThreadLimit threads_;
