@@ -23,6 +23,7 @@
 #include "preprocess/cli/failure.h"
 #include "preprocess/cli/interrupt.h"
 #include "preprocess/cli/memory_limit.h"
+#include "preprocess/cli/source_reader.h"
 #include "preprocess/cli/text_file.h"
 #include "preprocess/cli/tool_version.h"
 
@@ -60,10 +61,33 @@ JobRecord new_record(const JobRequest& request, const CommandLine& line) {
   return record;
 }
 
+/// Words of a bake that stand for files, as batches write them: before all options.
+std::vector<std::string> source_words(const std::vector<std::string>& command) {
+  std::vector<std::string> words;
+  for (std::size_t i = 1; i < command.size() && !command[i].starts_with('-'); ++i)
+    words.push_back(command[i]);
+  return words;
+}
+
+/// A folder or a numbered sequence may have got frames that were not there when it was read.
+bool read_all_sources(const JobRecord& now, const JobRecord& last) {
+  const std::vector<std::string> words = source_words(now.command);
+  if (now.command.front() != "bake" || words.empty()) return true;
+  std::set<std::string> read;
+  for (const FileState& input : last.inputs) read.insert(input.path);
+  try {
+    const std::vector<std::string> files = find_source(words).files.files;
+    return std::all_of(files.begin(), files.end(),
+                       [&](const std::string& file) { return read.contains(file); });
+  } catch (const Error&) {
+    return false;  // the bake will say what is wrong
+  }
+}
+
 bool is_up_to_date(const JobRecord& last, const JobRecord& now) {
   return last.status == JobStatus::kDone && last.command_hash == now.command_hash &&
          last.program_hash == now.program_hash && last.version == now.version &&
-         are_unchanged(last.inputs) && are_unchanged(last.outputs);
+         read_all_sources(now, last) && are_unchanged(last.inputs) && are_unchanged(last.outputs);
 }
 
 std::set<std::string> output_folders(const JobRequest& request) {

@@ -34,6 +34,11 @@ std::string record_name(const std::string& path) {
   return name;
 }
 
+std::string folder_of(const std::string& path) {
+  const std::string folder = fs::path(path).parent_path().string();
+  return folder.empty() ? "." : folder;
+}
+
 class Planner {
  public:
   explicit Planner(const Manifest& manifest) : manifest_(manifest) {}
@@ -96,6 +101,8 @@ class Planner {
     for (std::size_t i = 1; i < item.inputs.size(); ++i)
       job.inputs.push_back(filled(item, item.inputs[i], match, "/input/" + std::to_string(i)));
     job.command.insert(job.command.end(), job.inputs.begin(), job.inputs.end());
+    for (std::string& input : job.inputs)
+      if (has_number_place(input)) input = folder_of(input);  // where new frames would appear
     if (const auto made = maker_.find(job.inputs.front()); made != maker_.end())
       job.needs.push_back(made->second);
     return job;

@@ -90,6 +90,23 @@ TEST_F(JobTest, ContentDecidesWhetherItRunsAgain) {
   EXPECT_FALSE(said_up_to_date(bake())) << "the record is cut";
 }
 
+TEST_F(JobTest, ANewFrameOfANumberedSequenceIsAChange) {
+  const auto frame = [&](int number, int height) {
+    folder_.write("walk/f_" + std::to_string(number) + ".obj",
+                  "v 0 0 0\nv 1 0 0\nv 0 1 " + std::to_string(height) + "\nf 1 2 3\n");
+  };
+  const auto walk = [&] {
+    return job("r/walk.json", {"bake", at("walk/f_#.obj"), "-o", at("out/walk.mdk"), "-q"});
+  };
+  frame(1, 0);
+  frame(2, 1);
+  ASSERT_FALSE(said_up_to_date(walk()));
+  EXPECT_TRUE(said_up_to_date(walk()));
+  frame(3, 2);
+  EXPECT_FALSE(said_up_to_date(walk()));
+  EXPECT_EQ(nlohmann::json::parse(record("r/walk.json").report)["keys"], 3);
+}
+
 TEST_F(JobTest, AnOutputThatComesOutAsItWasKeepsItsTimeStamp) {
   ASSERT_EQ(bake().status, 0);
   const long long before = folder_.time_stamp("out/a.mdk");

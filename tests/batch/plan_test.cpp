@@ -57,6 +57,13 @@ TEST_F(Plan, AMeshTakesTheCacheOfItsName) {
   EXPECT_THAT(jobs[0].inputs, ElementsAre("in/cow.obj", "in/cow.pc2"));
 }
 
+TEST_F(Plan, ANumberedSequenceHangsOnItsFolder) {
+  const std::vector<Job> jobs =
+      plan(R"({"bakes": [{"input": "in/walk_####.obj", "output": "walk.mdk"}]})");
+  EXPECT_THAT(jobs[0].command, ElementsAre("bake", "in/walk_####.obj", "-o", "walk.mdk"));
+  EXPECT_THAT(jobs[0].inputs, ElementsAre("in"));
+}
+
 TEST_F(Plan, LongSequencesAreCutAndEveryFrameIsKnown) {
   const std::vector<Job> jobs = plan(R"({
     "bakes": [{"input": "a.glb", "output": "a.mdk"}],
