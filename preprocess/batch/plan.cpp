@@ -144,10 +144,9 @@ class Planner {
                      "nothing in this manifest bakes " + match.path +
                          ", so its source is not known; leave \"source\" out");
       const Job& bake = jobs_[job.needs.front()];
-      for (const std::string& input : bake.inputs) {
-        job.command.push_back("--source=" + input);
-        job.inputs.push_back(input);
-      }
+      for (std::size_t i = 1; bake.command[i] != "-o"; ++i)  // its inputs come first
+        job.command.push_back("--source=" + bake.command[i]);
+      job.inputs.insert(job.inputs.end(), bake.inputs.begin(), bake.inputs.end());
       for (const std::string& word : options_of_bake_[job.inputs.front()])
         if (word.starts_with("--fps=") || word.starts_with("--clips=")) job.command.push_back(word);
     }
