@@ -185,7 +185,8 @@ TEST_F(Engines, SlurmArraysSurviveAKilledTaskAndNameABadInput) {
   EXPECT_EQ(first.status, 3) << first.out << first.err;
   EXPECT_THAT(first.out, HasSubstr("was killed without a word"));
   std::set<std::string> not_done;
-  for (const Json& job : summary(3)["not_done"]) not_done.insert(job["record"]);
+  const Json merged_first = summary(3);
+  for (const Json& job : merged_first["not_done"]) not_done.insert(job["record"]);
   EXPECT_EQ(not_done.size(), 2u * (1 + kRangesPerRender)) << "the bad, the killed, their renders";
 
   const std::string before = folder_.shell("find out -type f -printf '%p %T@\n' | sort").out;

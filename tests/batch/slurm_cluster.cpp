@@ -51,7 +51,7 @@ std::string with(std::string text, const std::string& word, const std::string& v
 }
 
 bool run(const std::string& line) {
-  return std::system((line + " > /dev/null 2>&1 < /dev/null").c_str()) == 0;
+  return std::system(("(" + line + ") > /dev/null 2>&1 < /dev/null").c_str()) == 0;
 }
 
 }  // namespace
