@@ -56,7 +56,7 @@ ModelStorage rigged(std::uint32_t vertices) {
   ModelStorage m = two_keys(vertices);
   m.clips = {{"c", 0, 4}};
   m.key_times = {0, 1, 2, 3};
-  m.poses = {PoseKind::kRig, {}, random_rig({.vertices = vertices, .keys = 4}, 5)};
+  m.poses = {PoseKind::kRig, {}, random_rig({.vertices = vertices, .keys = 4}, 5), {}};
   return m;
 }
 
