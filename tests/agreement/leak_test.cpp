@@ -92,7 +92,8 @@ class LeakHunt {
     Renderer renderer(model_, kTechniques[0]);
     std::uint64_t missed = 0, shot = 0;
     for (std::size_t image = 0; shot < rays; ++image) {
-      FrameRequest request{.width = kSide, .height = kSide};
+      FrameRequest request;
+      request.width = request.height = kSide;
       if (!choose_view(request)) continue;
       renderer.set_technique(kTechniques[image % std::size(kTechniques)]);
       const FrameStats stats = renderer.trace(request);

@@ -40,7 +40,8 @@ TEST_F(FormatsDocument, EveryTestItNamesIsThere) {
   EXPECT_GT(names.size(), 60u);
   for (const std::string& name : names) {
     const std::size_t dot = name.find('.');
-    const std::string cased = "(" + name.substr(0, dot) + ", " + name.substr(dot + 1) + ")";
+    std::string cased = "(";
+    cased.append(name, 0, dot).append(", ").append(name, dot + 1).append(")");
     EXPECT_NE(tests.find(cased), std::string::npos) << name;
   }
 }
