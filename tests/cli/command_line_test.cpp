@@ -114,7 +114,7 @@ TEST_F(CommandLine, WrongUseIsStatus2AndOneSentence) {
       {"render", baked(), "-o", out("x#.png"), "--frames", "0:1", "--clip", "bend"},
       {"render", baked(), "-o", out("x#.png"), "--size", "0x0"},
       {"render", baked(), "-o", out("x#.png"), "--camera", "1 2 3"},
-      {"render", baked(), "-o", out("x#.png"), "--samples", "4"},
+      {"render", baked(), "-o", out("x#.png"), "--samples", "0"},
       {"render", baked(), "-o", baked(), "--frames", "0"},
       {"bench"},
       {"bench", baked(), "--techniques", "fuzzy-kdtree,magic"},
