@@ -94,13 +94,14 @@ measure() {
 }
 
 measure_all() {
-  local isas best isa name
-  read -ra isas < <("$mdprep" bench --help | sed -n 's/.*this machine has \(.*\)).*/\1/p')
-  isas=("${isas[@]/scalar/}")
-  for isa in "${isas[@]}"; do if [[ $isa ]]; then best=$isa; fi; done
+  local isas=() best isa name
+  for isa in neon sse4 avx2 avx512; do  # what the machine lacks is refused
+    if "$mdprep" info "$work/${models[0]}.mdk" --isa "$isa" >/dev/null 2>&1; then isas+=("$isa"); fi
+  done
+  best=${isas[-1]}
   for name in "${models[@]}"; do measure "$best" 1 "$name"; done
   for isa in "${isas[@]}"; do
-    if [[ -z $isa || $isa == "$best" ]]; then continue; fi
+    if [[ $isa == "$best" ]]; then continue; fi
     for name in "${further[@]}"; do measure "$isa" 1 "$name" "${further_options[@]}"; done
   done
   if (($(nproc) > 1)); then
