@@ -3,14 +3,13 @@
 // first meets its leaf, and serve every tile.
 #pragma once
 
-#include <atomic>
 #include <cstdint>
-#include <memory>
 #include <span>
 #include <vector>
 
 #include "common/motion/pose_sequence.h"
 #include "common/structures/wide_bvh.h"
+#include "common/trace/kernels/frame_cache.h"
 
 namespace mdk {
 
@@ -64,40 +63,7 @@ struct alignas(64) ProjectedBlock {
   std::uint32_t small = 0;   ///< may be hit in at most 2 x 2 pixels
 };
 
-/// The projected blocks of one frame, each filled by the thread that first asks for it.
-class ProjectionCache {
- public:
-  /// Begins a frame with so many blocks: none is projected.
-  void begin_frame(std::size_t blocks);
-
-  /// False for so many blocks that fetching what was kept would cost as much as making it again.
-  bool usable() const { return usable_; }
-
-  /// Block `number`, made by project(block) if this frame has not seen it. Never waits: where
-  /// another thread is at it, `spare` is filled and returned instead.
-  template <class Project>
-  const ProjectedBlock& get(std::uint32_t number, ProjectedBlock& spare, const Project& project) {
-    std::atomic<std::uint32_t>& state = states_[number];
-    std::uint32_t seen = state.load(std::memory_order_acquire);
-    if (seen == ready_) return blocks_[number];
-    const std::uint32_t busy = ready_ - 1;
-    if (seen != busy && state.compare_exchange_strong(seen, busy, std::memory_order_relaxed)) {
-      project(blocks_[number]);
-      state.store(ready_, std::memory_order_release);
-      return blocks_[number];
-    }
-    project(spare);
-    return spare;
-  }
-
-  std::size_t bytes() const { return size_ * (sizeof(ProjectedBlock) + sizeof(std::uint32_t)); }
-
- private:
-  std::size_t size_ = 0;
-  bool usable_ = false;
-  std::uint32_t ready_ = 0;  ///< what a block's state is once projected in this frame
-  std::unique_ptr<ProjectedBlock[]> blocks_;
-  std::unique_ptr<std::atomic<std::uint32_t>[]> states_;
-};
+/// The projected blocks of one frame.
+using ProjectionCache = FrameCache<ProjectedBlock, 32768>;
 
 }  // namespace mdk
