@@ -10,14 +10,14 @@
 
 #include "common/trace/technique.h"
 #include "formats/image_writer.h"
-#include "viewer/overlays.h"
-#include "viewer/picture_job.h"
-#include "viewer/picture_mouse.h"
-#include "viewer/picture_name.h"
-#include "viewer/pose_panel.h"
-#include "viewer/render_command.h"
+#include "viewer/panel/overlays.h"
+#include "viewer/panel/pose_panel.h"
+#include "viewer/panel/time_line.h"
+#include "viewer/picture/picture_job.h"
+#include "viewer/picture/picture_name.h"
+#include "viewer/picture/render_command.h"
+#include "viewer/state/picture_mouse.h"
 #include "viewer/state_report.h"
-#include "viewer/time_line.h"
 
 namespace mdk {
 namespace {

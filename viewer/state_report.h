@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <string>
 
-#include "viewer/view_state.h"
-#include "viewer/widget_map.h"
+#include "viewer/state/view_state.h"
+#include "viewer/state/widget_map.h"
 
 namespace mdk {
 

@@ -11,9 +11,9 @@
 #include "common/trace/technique.h"
 #include "formats/mdk_writer.h"
 #include "tests/viewer/waving_bar.h"
-#include "viewer/render_worker.h"
-#include "viewer/request_policy.h"
-#include "viewer/resolution.h"
+#include "viewer/picture/render_worker.h"
+#include "viewer/picture/request_policy.h"
+#include "viewer/picture/resolution.h"
 
 namespace mdk {
 namespace {

@@ -1,5 +1,5 @@
 // A skeleton posed by hand: limits are kept unless told otherwise, and past them no box is trusted.
-#include "viewer/hand_pose.h"
+#include "viewer/state/hand_pose.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include "formats/mdk_writer.h"
 #include "tests/formats/sample_model.h"
 #include "tests/formats/temp_folder.h"
-#include "viewer/picture_job.h"
+#include "viewer/picture/picture_job.h"
 
 namespace mdk::test {
 namespace {

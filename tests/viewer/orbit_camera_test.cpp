@@ -1,4 +1,4 @@
-#include "viewer/orbit_camera.h"
+#include "viewer/state/orbit_camera.h"
 
 #include <gtest/gtest.h>
 

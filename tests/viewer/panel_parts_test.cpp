@@ -6,11 +6,11 @@
 #include <nlohmann/json.hpp>
 
 #include "viewer/commands.h"
-#include "viewer/frame_history.h"
-#include "viewer/layout.h"
-#include "viewer/number_text.h"
+#include "viewer/panel/number_text.h"
+#include "viewer/state/frame_history.h"
+#include "viewer/state/layout.h"
 #include "viewer/state_report.h"
-#include "viewer/texture_blit.h"
+#include "viewer/window/texture_blit.h"
 
 namespace mdk {
 namespace {

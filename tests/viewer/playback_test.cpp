@@ -1,4 +1,4 @@
-#include "viewer/playback.h"
+#include "viewer/state/playback.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // The command line copied from the viewer; that it gives the same pixels is tested in the window.
-#include "viewer/render_command.h"
+#include "viewer/picture/render_command.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // From paths to models: opened, baked by the real mdprep, cancelled, loaded again.
-#include "viewer/scene_loader.h"
+#include "viewer/scene/scene_loader.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@
 #include "formats/mdk_writer.h"
 #include "tests/formats/temp_folder.h"
 #include "tests/viewer/waving_bar.h"
-#include "viewer/bake_process.h"
+#include "viewer/scene/bake_process.h"
 
 namespace mdk::test {
 namespace {

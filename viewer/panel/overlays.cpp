@@ -1,0 +1,143 @@
+#include "viewer/panel/overlays.h"
+
+#include <algorithm>
+#include <string>
+
+#include "viewer/panel/ui_parts.h"
+
+namespace mdk {
+namespace {
+
+constexpr ImGuiWindowFlags kFloating = ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize |
+                                       ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
+                                       ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoNav |
+                                       ImGuiWindowFlags_NoFocusOnAppearing;
+
+void centered_text(const char* text, ImFont* font, ImU32 color) {
+  ImGui::PushFont(font);
+  const float width = ImGui::CalcTextSize(text).x;
+  ImGui::SetCursorPosX((ImGui::GetWindowSize().x - width) / 2);
+  ImGui::PushStyleColor(ImGuiCol_Text, color);
+  ImGui::TextUnformatted(text);
+  ImGui::PopStyleColor();
+  ImGui::PopFont();
+}
+
+void draw_welcome(const Rect& picture, const Theme& theme) {
+  ImGui::SetNextWindowPos({picture.x + picture.width / 2, picture.y + picture.height / 2},
+                          ImGuiCond_Always, {0.5f, 0.5f});
+  ImGui::SetNextWindowSize({std::min(picture.width, 560 * theme.scale), 0});
+  ImGui::SetNextWindowBgAlpha(0);
+  ImGui::Begin("##welcome", nullptr, kFloating | ImGuiWindowFlags_NoInputs);
+  centered_text("Drop an animation here", theme.fonts.large, kTextColor);
+  ImGui::Spacing();
+  centered_text(".mdk opens at once; .glb, .gltf, or an .obj with its .pc2 or .mdd is baked first",
+                theme.fonts.text, kDimColor);
+  ImGui::Spacing();
+  centered_text("To keep what is baked", theme.fonts.text, kDimColor);
+  centered_text("mdprep bake hand.glb -o hand.mdk", theme.fonts.text, kTextColor);
+  ImGui::Spacing();
+  centered_text("Press ? for the keys", theme.fonts.text, kDimColor);
+  ImGui::End();
+}
+
+void draw_baking(const Rect& picture, const Theme& theme, const SceneLoader::Progress& baking,
+                 UiResult& result) {
+  const float width = std::min(picture.width, 380 * theme.scale);
+  ImGui::SetNextWindowPos({picture.x + picture.width / 2, picture.y + picture.height / 2},
+                          ImGuiCond_Always, {0.5f, 0.5f});
+  ImGui::SetNextWindowSize({width, 0});
+  ImGui::PushStyleColor(ImGuiCol_WindowBg, kFloatingColor);
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 10 * theme.scale);
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(20 * theme.scale, 16 * theme.scale));
+  ImGui::Begin("##baking", nullptr, kFloating);
+  ImGui::PushFont(theme.fonts.strong);
+  ImGui::TextUnformatted(("Baking " + baking.name).c_str());
+  ImGui::PopFont();
+  ImGui::ProgressBar(static_cast<float>(baking.bake.fraction), {-1, 6 * theme.scale}, "");
+  ImGui::AlignTextToFramePadding();
+  ImGui::TextDisabled("%s", baking.bake.text.empty() ? "starting" : baking.bake.text.c_str());
+  record(result.widgets, "bake-progress");
+  const float button = 80 * theme.scale;
+  ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - button);
+  if (ImGui::Button("Cancel", {button, 0})) result.actions.push_back({Command::kCancelBake});
+  record(result.widgets, "cancel-bake");
+  ImGui::End();
+  ImGui::PopStyleVar(2);
+  ImGui::PopStyleColor();
+}
+
+void draw_error(const Rect& picture, const Theme& theme, ViewState& state, UiResult& result) {
+  const float margin = 14 * theme.scale;
+  ImGui::SetNextWindowPos({picture.x + margin, picture.y + margin});
+  ImGui::SetNextWindowSize({std::max(80.0f, picture.width - 2 * margin), 0});
+  ImGui::PushStyleColor(ImGuiCol_WindowBg, kErrorColor);
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 8 * theme.scale);
+  ImGui::Begin("##error", nullptr, kFloating);
+  const float button = ImGui::GetFrameHeight();
+  const float button_x = ImGui::GetWindowContentRegionMax().x - button;
+  ImGui::PushTextWrapPos(button_x - margin);
+  ImGui::AlignTextToFramePadding();
+  ImGui::TextUnformatted(state.error.c_str());
+  ImGui::PopTextWrapPos();
+  record(result.widgets, "error");
+  ImGui::SameLine(button_x);
+  const bool dismissed = ImGui::Button("x", {button, 0});
+  record(result.widgets, "dismiss-error");
+  ImGui::End();
+  ImGui::PopStyleVar();
+  ImGui::PopStyleColor();
+  if (dismissed) state.error.clear();
+}
+
+void draw_notice(const Rect& picture, const Theme& theme, const std::string& notice) {
+  const float margin = 14 * theme.scale;
+  ImGui::SetNextWindowPos({picture.x + margin, picture.y + picture.height - margin},
+                          ImGuiCond_Always, {0, 1});
+  ImGui::PushStyleColor(ImGuiCol_WindowBg, kFloatingColor);
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 8 * theme.scale);
+  ImGui::Begin("##notice", nullptr, kFloating | ImGuiWindowFlags_NoInputs);
+  ImGui::TextUnformatted(notice.c_str());
+  ImGui::End();
+  ImGui::PopStyleVar();
+  ImGui::PopStyleColor();
+}
+
+void draw_help(const Rect& picture, const Theme& theme, UiResult& result) {
+  ImGui::SetNextWindowPos({picture.x + picture.width / 2, picture.y + picture.height / 2},
+                          ImGuiCond_Always, {0.5f, 0.5f});
+  ImGui::PushStyleColor(ImGuiCol_WindowBg, kFloatingColor);
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 10 * theme.scale);
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(24 * theme.scale, 18 * theme.scale));
+  ImGui::Begin("##help", nullptr, kFloating);
+  ImGui::PushFont(theme.fonts.strong);
+  ImGui::TextUnformatted("Keys and mouse");
+  ImGui::PopFont();
+  ImGui::Spacing();
+  if (ImGui::BeginTable("##keys", 2, ImGuiTableFlags_SizingFixedFit)) {
+    for (const ShortcutHelp& line : shortcut_help()) {
+      ImGui::TableNextColumn();
+      ImGui::TextUnformatted(line.keys);
+      ImGui::SameLine(0, 26 * theme.scale);
+      ImGui::TableNextColumn();
+      ImGui::TextDisabled("%s", line.does);
+    }
+    ImGui::EndTable();
+  }
+  ImGui::End();
+  result.widgets["help-overlay"] = {picture.x, picture.y, picture.width, picture.height};
+  ImGui::PopStyleVar(2);
+  ImGui::PopStyleColor();
+}
+
+}  // namespace
+
+void draw_overlays(const Rect& picture, const Theme& theme, ViewState& state, UiResult& result) {
+  if (!state.file && !state.baking && !state.help_open) draw_welcome(picture, theme);
+  if (state.baking) draw_baking(picture, theme, *state.baking, result);
+  if (!state.error.empty()) draw_error(picture, theme, state, result);
+  if (!state.notice.empty()) draw_notice(picture, theme, state.notice);
+  if (state.help_open) draw_help(picture, theme, result);
+}
+
+}  // namespace mdk

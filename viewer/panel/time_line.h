@@ -1,0 +1,12 @@
+// TimeLine: the bar below the picture: play, step, loop, speed, clip, and the keys to scrub along.
+#pragma once
+
+#include "viewer/panel/side_panel.h"
+
+namespace mdk {
+
+/// Draws the bar into `place`; choices act on `state` at once, the rest is asked for in `result`.
+/// Dragging holds the time; letting go plays on.
+void draw_time_line(const Rect& place, const Theme& theme, ViewState& state, UiResult& result);
+
+}  // namespace mdk

@@ -1,0 +1,143 @@
+#include "viewer/scene/scene_loader.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <utility>
+
+namespace mdk {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool is_baked(const std::string& path) {
+  std::string extension = fs::path(path).extension().string();
+  std::ranges::transform(extension, extension.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return extension == ".mdk";
+}
+
+/// A folder for one file that is mapped at once and need not have a name any longer.
+class ScratchFolder {
+ public:
+  ScratchFolder() : path_((fs::temp_directory_path() / "mdview-XXXXXX").string()) {
+    if (!::mkdtemp(path_.data()))
+      throw Error(ErrorCode::kIo, path_ + ": cannot be made: " + std::strerror(errno));
+  }
+  ~ScratchFolder() {
+    std::error_code ignored;
+    fs::remove_all(path_, ignored);
+  }
+  ScratchFolder(const ScratchFolder&) = delete;
+  ScratchFolder& operator=(const ScratchFolder&) = delete;
+  std::string file(const std::string& name) const { return (fs::path(path_) / name).string(); }
+
+ private:
+  std::string path_;
+};
+
+}  // namespace
+
+std::vector<SceneLoader::FileStamp> SceneLoader::stamps_of(const std::vector<std::string>& paths) {
+  std::vector<FileStamp> stamps;
+  for (const std::string& path : paths) {
+    FileStamp stamp;
+    std::error_code none;
+    stamp.time = fs::last_write_time(path, none);
+    stamp.bytes = fs::file_size(path, none);
+    stamps.push_back(stamp);
+  }
+  return stamps;
+}
+
+void SceneLoader::load(std::vector<std::string> paths) {
+  cancel();
+  paths_ = std::move(paths);
+  start(Reason::kAskedFor);
+}
+
+void SceneLoader::start(Reason reason) {
+  stamps_ = stamps_of(paths_);
+  cancelled_ = false;
+  busy_ = true;
+  thread_ = std::thread([this, paths = paths_, reason] { run(paths, reason); });
+}
+
+void SceneLoader::cancel() {
+  {
+    const std::lock_guard lock(mutex_);
+    cancelled_ = true;
+    if (process_) process_->kill();
+  }
+  if (thread_.joinable()) thread_.join();
+  const std::lock_guard lock(mutex_);
+  loaded_.reset();
+}
+
+std::optional<SceneLoader::Progress> SceneLoader::progress() const {
+  const std::lock_guard lock(mutex_);
+  return progress_;
+}
+
+std::optional<LoadedScene> SceneLoader::take_loaded() {
+  const std::lock_guard lock(mutex_);
+  return std::exchange(loaded_, std::nullopt);
+}
+
+void SceneLoader::look_for_changes() {
+  if (paths_.empty() || busy_ || stamps_of(paths_) == stamps_) return;
+  if (thread_.joinable()) thread_.join();
+  start(Reason::kChanged);
+}
+
+void SceneLoader::run(const std::vector<std::string>& paths, Reason reason) {
+  LoadedScene scene;
+  scene.path = paths.front();
+  scene.is_again = reason == Reason::kChanged;
+  try {
+    scene.file = open(paths);
+  } catch (const Error& error) {
+    scene.error = error;
+  } catch (const std::exception& error) {
+    scene.error = Error(ErrorCode::kInternal, paths.front() + ": " + error.what());
+  }
+  {
+    const std::lock_guard lock(mutex_);
+    process_.reset();
+    progress_.reset();
+    if (!cancelled_) loaded_ = std::move(scene);
+    busy_ = false;
+  }
+  on_news_();
+}
+
+std::shared_ptr<const MdkFile> SceneLoader::open(const std::vector<std::string>& paths) {
+  return paths.size() == 1 && is_baked(paths.front())
+             ? std::make_shared<const MdkFile>(paths.front())
+             : bake(paths);
+}
+
+std::shared_ptr<const MdkFile> SceneLoader::bake(const std::vector<std::string>& paths) {
+  const fs::path source(paths.front());
+  const ScratchFolder folder;
+  const std::string baked = folder.file(source.stem().string() + ".mdk");
+  const auto process = std::make_shared<BakeProcess>(paths, baked);
+  {
+    const std::lock_guard lock(mutex_);
+    process_ = process;
+    progress_ = Progress{source.filename().string(), {}};
+    if (cancelled_) process->kill();
+  }
+  on_news_();
+  while (auto news = process->next_progress()) {
+    const std::lock_guard lock(mutex_);
+    progress_->bake = *std::move(news);
+    on_news_();
+  }
+  process->finish();
+  return std::make_shared<const MdkFile>(baked);
+}
+
+}  // namespace mdk

@@ -1,0 +1,83 @@
+// ViewState: what is open, what the user chose, and what the last frames said. The panels show and
+// change it; the app makes pictures of it.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "common/trace/frame_stats.h"
+#include "common/trace/shading.h"
+#include "formats/mdk_view.h"
+#include "viewer/scene/scene_loader.h"
+#include "viewer/state/frame_history.h"
+#include "viewer/state/hand_pose.h"
+#include "viewer/state/layout.h"
+#include "viewer/state/orbit_camera.h"
+#include "viewer/state/playback.h"
+
+namespace mdk {
+
+enum class Resolution {
+  kFull,
+  kHalf,
+  kQuarter,
+  kAuto,  ///< full, but coarser while a hand drags and full would be late
+};
+
+struct ViewSettings {
+  std::size_t technique = 0;  ///< row of technique_table()
+  ShadingMode shading = ShadingMode::kDiffuse;
+  std::uint32_t samples = 1;                      ///< per pixel
+  std::uint32_t occlusion_rays = kOcclusionRays;  ///< per sample of lit pictures
+  Resolution resolution = Resolution::kAuto;
+  bool count_work = false;    ///< trace an extra counting frame now and then
+  bool keep_tracing = false;  ///< trace again although nothing has changed, to watch the times
+
+  /// To another row of the table, around its ends.
+  void step_technique(int by);
+  void next_shading();
+};
+
+/// The last picture shown and what it cost.
+struct FrameReport {
+  std::size_t technique = 0;
+  std::uint32_t width = 0, height = 0;
+  FrameStats stats;  ///< without counters
+  std::size_t structure_bytes = 0;
+  std::string note;  ///< what the technique chose, where it chooses
+  HeatScale heat;    ///< of heat maps
+};
+
+/// What the last counting frame counted.
+struct WorkReport {
+  std::size_t technique = 0;
+  std::uint64_t rays = 0;
+  TraceCounters counters;
+};
+
+struct ViewState {
+  std::shared_ptr<const MdkFile> file;          ///< null: nothing is open
+  std::string path;                             ///< of it, or of the source file it was baked from
+  std::string file_name;                        ///< without its folders
+  std::optional<SceneLoader::Progress> baking;  ///< of a source file, while that goes on
+  ViewSettings settings;
+  Playback playback;
+  OrbitCamera camera;
+  HandPose hand;  ///< of a file with a skeleton; inactive for others
+
+  std::optional<FrameReport> last_frame;
+  std::optional<WorkReport> last_work;
+  FrameHistory history;
+  double shown_per_second = 0;
+
+  std::string error;   ///< the sentence that stands in the window, else empty
+  std::string notice;  ///< a short-lived message, else empty
+  PanelMode panel = PanelMode::kShown;
+  bool help_open = false;
+
+  const Model* model() const { return file ? &file->model() : nullptr; }
+};
+
+}  // namespace mdk

@@ -1,0 +1,196 @@
+#include "viewer/window/window.h"
+
+#include <glad/gl.h>
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+#include <backends/imgui_impl_glfw.h>
+#include <backends/imgui_impl_opengl3.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "common/base/error.h"
+
+namespace mdk {
+namespace {
+
+Error no_window(const std::string& what) {
+  const char* reason = nullptr;
+  glfwGetError(&reason);
+  return {ErrorCode::kIo, what + (reason ? std::string(" (") + reason + ")" : std::string()) +
+                              "; \"mdprep render\" makes pictures without a window"};
+}
+
+}  // namespace
+
+// GLFW hands everything to callbacks; they only note what came. ImGui's own callbacks are chained
+// behind these (ImGui 1.86 polls its keys and would miss a quick tap).
+struct Window::Events {
+  bool active = true;
+  std::vector<KeyEvent> keys;
+  std::vector<std::string> drops;
+
+  static Events& of(GLFWwindow* window) {
+    return *static_cast<Events*>(glfwGetWindowUserPointer(window));
+  }
+};
+
+Window::Window(const WindowSize& size, SizeUnit unit) : events_(std::make_unique<Events>()) {
+  if (!glfwInit()) throw no_window("mdview finds no display to open a window on");
+  glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
+  glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
+  glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
+  glfwWindowHint(GLFW_OPENGL_FORWARD_COMPAT, GLFW_TRUE);
+  glfwWindowHint(GLFW_SCALE_TO_MONITOR, unit == SizeUnit::kScaled ? GLFW_TRUE : GLFW_FALSE);
+  window_ = glfwCreateWindow(static_cast<int>(size.width), static_cast<int>(size.height), "mdview",
+                             nullptr, nullptr);
+  if (!window_) {
+    const Error error = no_window("mdview cannot open a window with OpenGL 3.3");
+    glfwTerminate();
+    throw error;
+  }
+  glfwMakeContextCurrent(window_);
+  if (!gladLoadGL(glfwGetProcAddress)) {
+    glfwDestroyWindow(window_);
+    glfwTerminate();
+    throw no_window("the functions of OpenGL 3.3 are missing here");
+  }
+  glfwSwapInterval(1);
+  glfwSetWindowSizeLimits(window_, kMinWindowSide, kMinWindowSide, GLFW_DONT_CARE, GLFW_DONT_CARE);
+  glfwSetWindowUserPointer(window_, events_.get());
+  install_callbacks(window_);
+
+  IMGUI_CHECKVERSION();
+  ImGui::CreateContext();
+  ImGui::GetIO().IniFilename = nullptr;
+  ImGui_ImplGlfw_InitForOpenGL(window_, true);
+  ImGui_ImplOpenGL3_Init("#version 330 core");
+}
+
+Window::~Window() {
+  ImGui_ImplOpenGL3_Shutdown();
+  ImGui_ImplGlfw_Shutdown();
+  ImGui::DestroyContext();
+  glfwDestroyWindow(window_);
+  glfwTerminate();
+}
+
+void Window::install_callbacks(GLFWwindow* window) {
+  glfwSetKeyCallback(window, [](GLFWwindow* w, int key, int, int action, int) {
+    Events& events = Events::of(w);
+    events.active = true;
+    if (action != GLFW_RELEASE) events.keys.push_back({key, 0});
+  });
+  glfwSetCharCallback(window, [](GLFWwindow* w, unsigned character) {
+    Events::of(w).keys.push_back({0, character});
+  });
+  glfwSetDropCallback(window, [](GLFWwindow* w, int count, const char** paths) {
+    Events& events = Events::of(w);
+    events.active = true;
+    events.drops.insert(events.drops.end(), paths, paths + count);
+  });
+  glfwSetMouseButtonCallback(window,
+                             [](GLFWwindow* w, int, int, int) { Events::of(w).active = true; });
+  glfwSetCursorPosCallback(window,
+                           [](GLFWwindow* w, double, double) { Events::of(w).active = true; });
+  glfwSetScrollCallback(window, [](GLFWwindow* w, double, double) { Events::of(w).active = true; });
+  glfwSetWindowRefreshCallback(window, [](GLFWwindow* w) { Events::of(w).active = true; });
+  glfwSetWindowFocusCallback(window, [](GLFWwindow* w, int) { Events::of(w).active = true; });
+  glfwSetCursorEnterCallback(window, [](GLFWwindow* w, int) { Events::of(w).active = true; });
+  glfwSetFramebufferSizeCallback(window,
+                                 [](GLFWwindow* w, int, int) { Events::of(w).active = true; });
+}
+
+bool Window::should_close() const { return glfwWindowShouldClose(window_); }
+void Window::set_title(const std::string& title) { glfwSetWindowTitle(window_, title.c_str()); }
+
+void Window::set_clipboard(const std::string& text) {
+  glfwSetClipboardString(window_, text.c_str());
+}
+
+void Window::wait_events(double seconds) {
+  if (seconds > 0)
+    glfwWaitEventsTimeout(seconds);
+  else
+    glfwPollEvents();
+}
+
+void Window::wake() { glfwPostEmptyEvent(); }
+
+bool Window::take_activity() { return std::exchange(events_->active, false); }
+
+std::vector<KeyEvent> Window::take_keys() {
+  std::vector<KeyEvent> keys = std::exchange(events_->keys, {});
+  if (ImGui::GetIO().WantTextInput) keys.clear();
+  return keys;
+}
+
+std::vector<std::string> Window::take_drops() { return std::exchange(events_->drops, {}); }
+
+float Window::width() const {
+  int width = 0, height = 0;
+  glfwGetWindowSize(window_, &width, &height);
+  return static_cast<float>(width);
+}
+
+float Window::height() const {
+  int width = 0, height = 0;
+  glfwGetWindowSize(window_, &width, &height);
+  return static_cast<float>(height);
+}
+
+int Window::framebuffer_width() const {
+  int width = 0, height = 0;
+  glfwGetFramebufferSize(window_, &width, &height);
+  return width;
+}
+
+int Window::framebuffer_height() const {
+  int width = 0, height = 0;
+  glfwGetFramebufferSize(window_, &width, &height);
+  return height;
+}
+
+float Window::pixel_ratio() const {
+  return width() > 0 ? static_cast<float>(framebuffer_width()) / width() : 1;
+}
+
+float Window::ui_scale() const {
+  float x = 1, y = 1;
+  glfwGetWindowContentScale(window_, &x, &y);
+  return std::clamp(x / pixel_ratio(), 0.5f, 4.0f);
+}
+
+void Window::begin_frame() {
+  glViewport(0, 0, framebuffer_width(), framebuffer_height());
+  glClearColor(0.07f, 0.075f, 0.09f, 1);
+  glClear(GL_COLOR_BUFFER_BIT);
+  ImGui_ImplOpenGL3_NewFrame();
+  ImGui_ImplGlfw_NewFrame();
+  ImGui::NewFrame();
+}
+
+void Window::end_frame() {
+  ImGui::Render();
+  ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+}
+
+Picture Window::read_pixels() const {
+  const int width = framebuffer_width(), height = framebuffer_height();
+  const auto row = static_cast<std::size_t>(width);
+  std::vector<std::uint32_t> pixels(row * static_cast<std::size_t>(height));
+  glPixelStorei(GL_PACK_ALIGNMENT, 4);
+  glReadPixels(0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, pixels.data());
+  for (int y = 0; y < height / 2; ++y) {  // OpenGL's row 0 is at the bottom
+    const auto upper = pixels.begin() + static_cast<std::ptrdiff_t>(row) * y;
+    const auto lower = pixels.begin() + static_cast<std::ptrdiff_t>(row) * (height - 1 - y);
+    std::swap_ranges(upper, upper + width, lower);
+  }
+  return {static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height), std::move(pixels)};
+}
+
+void Window::present() { glfwSwapBuffers(window_); }
+
+}  // namespace mdk
