@@ -14,8 +14,6 @@
 #include "viewer/panel/pose_panel.h"
 #include "viewer/panel/time_line.h"
 #include "viewer/picture/picture_job.h"
-#include "viewer/picture/picture_name.h"
-#include "viewer/picture/render_command.h"
 #include "viewer/state/picture_mouse.h"
 #include "viewer/state_report.h"
 
@@ -26,8 +24,8 @@ constexpr double kDrawSeconds = 1.0 / 60;     // never drawn more often
 constexpr double kPlayingSeconds = 1.0 / 30;  // the play head moves although the picture is late
 constexpr double kIdleSeconds = 1.0;
 constexpr double kNoticeSeconds = 4;
-constexpr double kLookSeconds = 0.5;  // between looks at the files on disk
-constexpr int kSettlingDraws = 3;
+constexpr double kTurntableSeconds = 14;  // once round
+constexpr double kLookSeconds = 0.5;      // between looks at the files on disk
 
 }  // namespace
 
@@ -40,6 +38,7 @@ App::App(const ViewerOptions& options)
       worker_(&Window::wake) {
   if (!options_.technique.empty()) state_.settings.technique = technique_row(options_.technique);
   state_.settings.shading = options_.shading;
+  state_.settings.colors = options_.colors;
   state_.settings.samples = options_.samples;
   state_.settings.occlusion_rays = options_.occlusion_rays;
   if (!options_.file.empty()) loader_.load({options_.file});
@@ -113,7 +112,7 @@ int App::run() {
   while (!quit_ && !window_.should_close()) {
     window_.wait_events(seconds_to_wait());
     const double now = clock_.seconds();
-    state_.playback.advance(now - last_event_time_);
+    pass_time(now - last_event_time_);
     last_event_time_ = now;
     handle_events();
     look_for_changes();
@@ -128,88 +127,17 @@ int App::run() {
   return scripted() && !state_.error.empty() ? static_cast<int>(error_code_) : 0;
 }
 
+void App::pass_time(double seconds) {
+  state_.playback.advance(seconds);
+  if (state_.turntable && motion_ == Motion::kStill)
+    state_.camera.orbit({2 * seconds / kTurntableSeconds, 0});  // a drag of 1 is half a turn
+}
+
 void App::handle_events() {
   if (window_.take_activity()) redraws_ = kSettlingDraws;
   for (const KeyEvent& event : window_.take_keys())
     if (const auto action = action_for(event)) execute(*action);
   if (auto drops = window_.take_drops(); !drops.empty()) loader_.load(std::move(drops));
-}
-
-void App::execute(const Action& action) {
-  redraws_ = kSettlingDraws;
-  Playback& playback = state_.playback;
-  switch (action.command) {
-    case Command::kPlayPause:
-      playback.toggle();
-      break;
-    case Command::kPreviousKey:
-      playback.step_key(StepDirection::kBack);
-      break;
-    case Command::kNextKey:
-      playback.step_key(StepDirection::kForward);
-      break;
-    case Command::kStart:
-      playback.go_to_start();
-      break;
-    case Command::kEnd:
-      playback.go_to_end();
-      break;
-    case Command::kPreviousTechnique:
-      state_.settings.step_technique(-1);
-      break;
-    case Command::kNextTechnique:
-      state_.settings.step_technique(+1);
-      break;
-    case Command::kTechniqueByNumber:
-      if (action.number < technique_table().size()) state_.settings.technique = action.number;
-      break;
-    case Command::kNextShading:
-      state_.settings.next_shading();
-      break;
-    case Command::kFit:
-      if (state_.file) state_.camera.fit(state_.file->model().bounds, picture_aspect());
-      break;
-    case Command::kResetView:
-      reset_view();
-      break;
-    case Command::kSavePicture:
-      save_picture();
-      break;
-    case Command::kSaveWindow:
-      save_window_ = true;
-      break;
-    case Command::kCopyCommand:
-      if (state_.file) copy_render_command();
-      break;
-    case Command::kCancelBake:
-      loader_.cancel();
-      break;
-    case Command::kTogglePanel:
-      state_.panel = state_.panel == PanelMode::kShown ? PanelMode::kHidden : PanelMode::kShown;
-      break;
-    case Command::kToggleHelp:
-      state_.help_open = !state_.help_open;
-      break;
-    case Command::kDismiss:
-      if (state_.help_open)
-        state_.help_open = false;
-      else if (!state_.error.empty())
-        state_.error.clear();
-      else if (state_.baking)
-        loader_.cancel();
-      else
-        quit_ = true;
-      break;
-    case Command::kQuit:
-      quit_ = true;
-      break;
-  }
-}
-
-void App::reset_view() {
-  if (!state_.file) return;
-  const Aabb& bounds = state_.file->model().bounds;
-  state_.camera.set(fit_camera(bounds, picture_aspect()), bounds);
 }
 
 void App::show_finished_frame() {
@@ -308,20 +236,21 @@ double App::picture_aspect() const {
 double App::seconds_to_wait() const {
   const double since_draw = clock_.seconds() - last_draw_time_;
   if (redraws_ > 0 || scripted()) return std::max(0.0, kDrawSeconds - since_draw);
-  if (state_.playback.playing()) return std::max(0.0, kPlayingSeconds - since_draw);
+  if (state_.moves()) return std::max(0.0, kPlayingSeconds - since_draw);
   return state_.notice.empty() ? kIdleSeconds : kNoticeSeconds / 8;
 }
 
 bool App::draw_is_due() const {
   const double since_draw = clock_.seconds() - last_draw_time_;
   if (redraws_ > 0 || scripted()) return since_draw >= kDrawSeconds;
-  return state_.playback.playing() && since_draw >= kPlayingSeconds;
+  return state_.moves() && since_draw >= kPlayingSeconds;
 }
 
 void App::draw() {
   last_draw_time_ = clock_.seconds();
   ++window_draws_;
   redraws_ = std::max(0, redraws_ - 1);
+  set_colors(state_.settings.colors);
   window_.begin_frame();
   blit_.draw(picture_pixels(), window_.framebuffer_height());
 
@@ -346,44 +275,6 @@ void App::draw() {
   // A scripted run with nothing to trace still comes to its end.
   const bool nothing_comes = !loader_.busy() && (!state_.file || requests_.failed());
   if (scripted() && nothing_comes) ++frames_shown_;
-}
-
-std::string App::render_command_of_picture() const {
-  if (!state_.file || state_.hand.active) return {};
-  const Playback& playback = state_.playback;
-  return render_command(wanted_job(), state_.path, playback.clips()[playback.clip()].name,
-                        playback.time());
-}
-
-void App::copy_render_command() {
-  const std::string command = render_command_of_picture();
-  if (!command.empty()) window_.set_clipboard(command);
-  show_notice(command.empty() ? "No mdprep command makes this picture: it is posed by hand"
-                              : "Copied the mdprep command that renders this picture");
-}
-
-void App::save_picture() {
-  if (shown_.pixels.empty())
-    show_notice("There is no picture to save yet");
-  else
-    save(shown_);
-}
-
-void App::save_window() {
-  save_window_ = false;
-  save(window_.read_pixels());
-}
-
-void App::save(const Picture& picture) {
-  try {
-    const std::string name = free_picture_name(
-        state_.file ? std::filesystem::path(state_.file_name).stem().string() : "mdview");
-    write_png(name, picture.width, picture.height, picture.pixels);
-    show_notice("Saved " + name + " (" + std::to_string(picture.width) + " x " +
-                std::to_string(picture.height) + ")");
-  } catch (const Error& error) {
-    show_error(error);
-  }
 }
 
 void App::finish() {

@@ -34,12 +34,15 @@ class App {
   int run();
 
  private:
+  static constexpr int kSettlingDraws = 3;  ///< ImGui needs a few to settle after an event
+
   void show_loaded_scene();
   void look_for_changes();
   void apply_options();
   void show_error(const Error& error);
   void show_notice(const std::string& sentence);
 
+  void pass_time(double seconds);
   void handle_events();
   void execute(const Action& action);
   void reset_view();
@@ -80,7 +83,7 @@ class App {
   double last_event_time_ = 0;  ///< when time was last let pass
   double last_draw_time_ = -1;
   double notice_until_ = 0;
-  int redraws_ = 1;  ///< ImGui needs a few drawings to settle after an event
+  int redraws_ = 1;  ///< still to be drawn
   Motion motion_ = Motion::kStill;
   double last_look_time_ = 0;  ///< at the files on disk
   bool quit_ = false, save_window_ = false, options_applied_ = false;

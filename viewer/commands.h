@@ -24,6 +24,8 @@ enum class Command {
   kSaveWindow,
   kCopyCommand,  ///< the mdprep render command line of the picture, to the clipboard
   kCancelBake,
+  kToggleTurntable,
+  kToggleColors,
   kTogglePanel,
   kToggleHelp,
   kDismiss,  ///< closes help or the error that stands, or cancels a bake; else quits

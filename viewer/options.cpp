@@ -64,6 +64,12 @@ Camera parse_camera(const std::string& text) {
   return camera;
 }
 
+ColorScheme parse_theme(const std::string& text) {
+  if (text == "dark") return ColorScheme::kDark;
+  if (text == "light") return ColorScheme::kLight;
+  throw usage("--theme \"" + text + "\": give dark or light");
+}
+
 void check(const ViewerOptions& options) {
   if (!options.technique.empty()) find_technique(options.technique);
   if (!std::isfinite(options.time) || options.time < 0)
@@ -75,7 +81,7 @@ void check(const ViewerOptions& options) {
 
 std::optional<ViewerOptions> parse_options(int argc, const char* const* argv, std::ostream& out) {
   ViewerOptions options;
-  std::string size, shading, camera;
+  std::string size, shading, camera, theme;
   bool play = false;
 
   CLI::App app{"mdview: look at an animated model in an .mdk file while it is ray traced.",
@@ -95,6 +101,7 @@ std::optional<ViewerOptions> parse_options(int argc, const char* const* argv, st
       ->check(CLI::Range(0u, kMostOcclusionRays));
   app.add_option("--clip", options.clip, "animation to show, by name (the first)");
   app.add_option("--time", options.time, "seconds from the clip's start (0)");
+  app.add_option("--theme", theme, "dark or light (dark)");
   app.add_flag("--play", play, "start playing");
   app.add_option("--camera", camera,
                  "ten numbers: eye xyz, target xyz, up xyz, vertical field of view in degrees");
@@ -120,6 +127,7 @@ std::optional<ViewerOptions> parse_options(int argc, const char* const* argv, st
   if (!size.empty()) options.size = parse_size(size);
   if (!shading.empty()) options.shading = find_shading(shading);
   if (!camera.empty()) options.camera = parse_camera(camera);
+  if (!theme.empty()) options.colors = parse_theme(theme);
   if (play) options.start = StartMode::kPlaying;
   check(options);
   return options;

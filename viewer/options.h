@@ -8,6 +8,7 @@
 
 #include "common/trace/camera.h"
 #include "common/trace/shading.h"
+#include "viewer/state/color_scheme.h"
 
 namespace mdk {
 
@@ -26,6 +27,7 @@ struct ViewerOptions {
   std::optional<WindowSize> size;  ///< none: 1280x800, enlarged on dense displays
   std::string technique;           ///< empty: the table's first
   ShadingMode shading = ShadingMode::kDiffuse;
+  ColorScheme colors = ColorScheme::kDark;
   std::uint32_t samples = 1;
   std::uint32_t occlusion_rays = kOcclusionRays;
   std::string clip;  ///< empty: the file's first

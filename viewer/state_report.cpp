@@ -100,6 +100,8 @@ std::string state_json(const ViewState& state, const WindowReport& window) {
   json["loop"] = loop_id(playback.loop());
   json["speed"] = playback.speed();
   json["resolution"] = resolution_id(state.settings.resolution);
+  json["theme"] = state.settings.colors == ColorScheme::kDark ? "dark" : "light";
+  json["turntable"] = state.turntable;
   json["counting"] = state.settings.count_work;
   json["camera"] = camera_json(state.camera.camera());
   json["pose_by_hand"] = hand_json(state);

@@ -26,8 +26,8 @@ void draw_grid(const ImVec2& lo, const ImVec2& hi, double top_ms) {
   const float size = ImGui::GetFontSize() * 0.76f;
   for (const double part : {0.5, 1.0}) {
     const float y = hi.y - static_cast<float>(part) * (hi.y - lo.y);
-    draw.AddLine({lo.x, y}, {hi.x, y}, kLineColor);
-    draw.AddText(font, size, {lo.x, y + 1}, kDimColor, milliseconds_text(part * top_ms).c_str());
+    draw.AddLine({lo.x, y}, {hi.x, y}, line_color());
+    draw.AddText(font, size, {lo.x, y + 1}, dim_color(), milliseconds_text(part * top_ms).c_str());
   }
 }
 
@@ -39,7 +39,7 @@ void draw_stage_bar(const Theme& theme, std::span<const FrameStage> stages) {
   const float width = ImGui::GetContentRegionAvail().x, height = 7 * theme.scale;
   double total = 0;
   for (const FrameStage& stage : stages) total += stage.ms;
-  draw.AddRectFilled(corner, {corner.x + width, corner.y + height}, kSunkenColor, height / 2);
+  draw.AddRectFilled(corner, {corner.x + width, corner.y + height}, sunken_color(), height / 2);
   double done = 0;
   for (std::size_t i = 0; i < stages.size() && total > 0; ++i) {
     const float from = static_cast<float>(done / total) * width;
@@ -77,7 +77,7 @@ void draw_history_plot(const Theme& theme, const FrameHistory& history) {
   const ImVec2 hi{lo.x + size.x, lo.y + size.y};
   ImGui::InvisibleButton("##history", size);
   const bool hovered = ImGui::IsItemHovered();
-  draw.AddRectFilled(lo, hi, kSunkenColor, 5 * theme.scale);
+  draw.AddRectFilled(lo, hi, sunken_color(), 5 * theme.scale);
 
   const float inset = 5 * theme.scale;
   const ImVec2 plot_lo{lo.x + inset, lo.y + inset}, plot_hi{hi.x - inset, hi.y - inset};

@@ -34,7 +34,7 @@ void draw_heat_legend(const Theme& theme, const HeatScale& heat) {
   const float text_y = corner.y + height + 2 * theme.scale;
   const auto label = [&](double share, const std::string& text) {
     const float room = width - ImGui::CalcTextSize(text.c_str()).x;
-    draw.AddText({corner.x + room * static_cast<float>(share), text_y}, kDimColor, text.c_str());
+    draw.AddText({corner.x + room * static_cast<float>(share), text_y}, dim_color(), text.c_str());
   };
   label(0, "0");
   label(0.5, number_text(heat.top / 2) + " " + std::string(heat.unit));

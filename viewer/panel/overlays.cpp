@@ -29,15 +29,15 @@ void draw_welcome(const Rect& picture, const Theme& theme) {
   ImGui::SetNextWindowSize({std::min(picture.width, 560 * theme.scale), 0});
   ImGui::SetNextWindowBgAlpha(0);
   ImGui::Begin("##welcome", nullptr, kFloating | ImGuiWindowFlags_NoInputs);
-  centered_text("Drop an animation here", theme.fonts.large, kTextColor);
+  centered_text("Drop an animation here", theme.fonts.large, text_color());
   ImGui::Spacing();
   centered_text(".mdk opens at once; .glb, .gltf, or an .obj with its .pc2 or .mdd is baked first",
-                theme.fonts.text, kDimColor);
+                theme.fonts.text, dim_color());
   ImGui::Spacing();
-  centered_text("To keep what is baked", theme.fonts.text, kDimColor);
-  centered_text("mdprep bake hand.glb -o hand.mdk", theme.fonts.text, kTextColor);
+  centered_text("To keep what is baked", theme.fonts.text, dim_color());
+  centered_text("mdprep bake hand.glb -o hand.mdk", theme.fonts.text, text_color());
   ImGui::Spacing();
-  centered_text("Press ? for the keys", theme.fonts.text, kDimColor);
+  centered_text("Press ? for the keys", theme.fonts.text, dim_color());
   ImGui::End();
 }
 
@@ -47,7 +47,7 @@ void draw_baking(const Rect& picture, const Theme& theme, const SceneLoader::Pro
   ImGui::SetNextWindowPos({picture.x + picture.width / 2, picture.y + picture.height / 2},
                           ImGuiCond_Always, {0.5f, 0.5f});
   ImGui::SetNextWindowSize({width, 0});
-  ImGui::PushStyleColor(ImGuiCol_WindowBg, kFloatingColor);
+  ImGui::PushStyleColor(ImGuiCol_WindowBg, floating_color());
   ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 10 * theme.scale);
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(20 * theme.scale, 16 * theme.scale));
   ImGui::Begin("##baking", nullptr, kFloating);
@@ -71,7 +71,7 @@ void draw_error(const Rect& picture, const Theme& theme, ViewState& state, UiRes
   const float margin = 14 * theme.scale;
   ImGui::SetNextWindowPos({picture.x + margin, picture.y + margin});
   ImGui::SetNextWindowSize({std::max(80.0f, picture.width - 2 * margin), 0});
-  ImGui::PushStyleColor(ImGuiCol_WindowBg, kErrorColor);
+  ImGui::PushStyleColor(ImGuiCol_WindowBg, error_color());
   ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 8 * theme.scale);
   ImGui::Begin("##error", nullptr, kFloating);
   const float button = ImGui::GetFrameHeight();
@@ -94,7 +94,7 @@ void draw_notice(const Rect& picture, const Theme& theme, const std::string& not
   const float margin = 14 * theme.scale;
   ImGui::SetNextWindowPos({picture.x + margin, picture.y + picture.height - margin},
                           ImGuiCond_Always, {0, 1});
-  ImGui::PushStyleColor(ImGuiCol_WindowBg, kFloatingColor);
+  ImGui::PushStyleColor(ImGuiCol_WindowBg, floating_color());
   ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 8 * theme.scale);
   ImGui::Begin("##notice", nullptr, kFloating | ImGuiWindowFlags_NoInputs);
   ImGui::TextUnformatted(notice.c_str());
@@ -106,7 +106,7 @@ void draw_notice(const Rect& picture, const Theme& theme, const std::string& not
 void draw_help(const Rect& picture, const Theme& theme, UiResult& result) {
   ImGui::SetNextWindowPos({picture.x + picture.width / 2, picture.y + picture.height / 2},
                           ImGuiCond_Always, {0.5f, 0.5f});
-  ImGui::PushStyleColor(ImGuiCol_WindowBg, kFloatingColor);
+  ImGui::PushStyleColor(ImGuiCol_WindowBg, floating_color());
   ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 10 * theme.scale);
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(24 * theme.scale, 18 * theme.scale));
   ImGui::Begin("##help", nullptr, kFloating);

@@ -30,7 +30,7 @@ void draw_joints(const SkeletonView& skeleton, const Theme& theme, HandPose& han
     const float indent = static_cast<float>(depth_of(skeleton, j)) * 9 * theme.scale;
     ImGui::SetCursorPosX(ImGui::GetCursorPosX() + indent);
     const bool turned = length(hand.pose.turns[j]) > 0;
-    if (!turned) ImGui::PushStyleColor(ImGuiCol_Text, kDimColor);
+    if (!turned) ImGui::PushStyleColor(ImGuiCol_Text, dim_color());
     if (ImGui::Selectable(joint_name(skeleton, j).c_str(), hand.joint == j)) hand.joint = j;
     if (!turned) ImGui::PopStyleColor();
     record(result.widgets, "joint:" + joint_name(skeleton, j));
@@ -84,7 +84,7 @@ void draw_limits(const SkeletonView& skeleton, HandPose& hand, UiResult& result)
   const std::uint32_t past = joint_past_limit(skeleton, hand.pose);
   if (past == kNoParent) return;
   ImGui::PushTextWrapPos(0);
-  ImGui::PushStyleColor(ImGuiCol_Text, kWarningColor);
+  ImGui::PushStyleColor(ImGuiCol_Text, warning_color());
   ImGui::TextUnformatted((joint_name(skeleton, past) +
                           " is past its limit: the fuzzy boxes do not hold here, the picture is "
                           "traced with boxes of this pose alone (Refitted BVH)")
@@ -101,7 +101,7 @@ void draw_pose_panel(const Rect& picture, const Theme& theme, ViewState& state, 
   const float margin = 14 * theme.scale;
   ImGui::SetNextWindowPos({picture.x + margin, picture.y + margin}, ImGuiCond_FirstUseEver);
   ImGui::SetNextWindowSize({250 * theme.scale, 0});
-  ImGui::PushStyleColor(ImGuiCol_WindowBg, kFloatingColor);
+  ImGui::PushStyleColor(ImGuiCol_WindowBg, floating_color());
   ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 8 * theme.scale);
   ImGui::Begin("Skeleton", nullptr,
                ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoSavedSettings |

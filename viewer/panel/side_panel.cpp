@@ -64,11 +64,11 @@ void draw_technique_row(std::size_t row, const Theme& theme, ViewState& state, U
     draw.AddCircleFilled(dot, 5 * unit, technique_color(row), 20);
   else
     draw.AddCircle(dot, 4.5f * unit, technique_color(row), 20, 1.8f * unit);
-  draw.AddText({corner.x + 25 * unit, text_y}, kTextColor, label.c_str());
+  draw.AddText({corner.x + 25 * unit, text_y}, text_color(), label.c_str());
   if (const auto median = state.history.median_ms(row)) {
     const std::string time = milliseconds_text(*median);
     draw.AddText({corner.x + width - ImGui::CalcTextSize(time.c_str()).x - 7 * unit, text_y},
-                 kDimColor, time.c_str());
+                 dim_color(), time.c_str());
   }
 }
 

@@ -38,15 +38,16 @@ ImVec4 rgb(int r, int g, int b, float alpha = 1) {
           alpha};
 }
 
-void set_colors(ImGuiStyle& style) {
-  ImVec4* c = style.Colors;
-  const ImVec4 accent = ImGui::ColorConvertU32ToFloat4(kAccentColor);
-  const auto faded = [&](float alpha) { return ImVec4(accent.x, accent.y, accent.z, alpha); };
-  c[ImGuiCol_Text] = ImGui::ColorConvertU32ToFloat4(kTextColor);
-  c[ImGuiCol_TextDisabled] = ImGui::ColorConvertU32ToFloat4(kDimColor);
+// Our own colours stand in ImGui's table too, in places of widgets that the panel has none of:
+// one table then holds a whole scheme.
+constexpr ImGuiCol kSunkenSlot = ImGuiCol_MenuBarBg, kLineSlot = ImGuiCol_TableBorderLight,
+                   kErrorSlot = ImGuiCol_DragDropTarget,
+                   kWarningSlot = ImGuiCol_PlotHistogramHovered, kFloatingSlot = ImGuiCol_PopupBg;
+
+void set_dark_colors(ImVec4* c) {
+  c[ImGuiCol_Text] = rgb(226, 230, 238);
+  c[ImGuiCol_TextDisabled] = rgb(139, 147, 163);
   c[ImGuiCol_WindowBg] = rgb(24, 26, 33);
-  c[ImGuiCol_ChildBg] = rgb(24, 26, 33, 0);
-  c[ImGuiCol_PopupBg] = rgb(32, 35, 44, 0.99f);
   c[ImGuiCol_Border] = rgb(255, 255, 255, 0.07f);
   c[ImGuiCol_FrameBg] = rgb(41, 45, 56);
   c[ImGuiCol_FrameBgHovered] = rgb(50, 55, 69);
@@ -54,17 +55,45 @@ void set_colors(ImGuiStyle& style) {
   c[ImGuiCol_Button] = rgb(41, 45, 56);
   c[ImGuiCol_ButtonHovered] = rgb(54, 60, 76);
   c[ImGuiCol_ButtonActive] = rgb(66, 74, 95);
-  c[ImGuiCol_Header] = faded(0.20f);
-  c[ImGuiCol_HeaderHovered] = faded(0.13f);
-  c[ImGuiCol_HeaderActive] = faded(0.28f);
-  c[ImGuiCol_CheckMark] = accent;
-  c[ImGuiCol_PlotHistogram] = accent;
-  c[ImGuiCol_SliderGrab] = accent;
-  c[ImGuiCol_SliderGrabActive] = accent;
-  c[ImGuiCol_Separator] = rgb(255, 255, 255, 0.07f);
-  c[ImGuiCol_ScrollbarBg] = rgb(0, 0, 0, 0);
+  c[ImGuiCol_CheckMark] = rgb(92, 160, 255);
   c[ImGuiCol_ScrollbarGrab] = rgb(64, 70, 86);
-  c[ImGuiCol_TextSelectedBg] = faded(0.35f);
+  c[kSunkenSlot] = rgb(16, 18, 23);
+  c[kLineSlot] = rgb(255, 255, 255, 0.09f);
+  c[kErrorSlot] = rgb(122, 38, 44, 0.96f);
+  c[kWarningSlot] = rgb(240, 190, 90);
+  c[kFloatingSlot] = rgb(30, 33, 41, 0.97f);
+}
+
+void set_light_colors(ImVec4* c) {
+  c[ImGuiCol_Text] = rgb(30, 34, 43);
+  c[ImGuiCol_TextDisabled] = rgb(98, 106, 122);
+  c[ImGuiCol_WindowBg] = rgb(240, 242, 246);
+  c[ImGuiCol_Border] = rgb(0, 0, 0, 0.14f);
+  c[ImGuiCol_FrameBg] = rgb(218, 222, 230);
+  c[ImGuiCol_FrameBgHovered] = rgb(207, 213, 224);
+  c[ImGuiCol_FrameBgActive] = rgb(196, 203, 217);
+  c[ImGuiCol_Button] = rgb(218, 222, 230);
+  c[ImGuiCol_ButtonHovered] = rgb(203, 209, 221);
+  c[ImGuiCol_ButtonActive] = rgb(186, 195, 212);
+  c[ImGuiCol_CheckMark] = rgb(26, 104, 214);
+  c[ImGuiCol_ScrollbarGrab] = rgb(178, 186, 200);
+  c[kSunkenSlot] = rgb(226, 229, 236);
+  c[kLineSlot] = rgb(0, 0, 0, 0.12f);
+  c[kErrorSlot] = rgb(250, 208, 208, 0.97f);
+  c[kWarningSlot] = rgb(160, 92, 0);
+  c[kFloatingSlot] = rgb(250, 251, 253, 0.97f);
+}
+
+ImU32 darker(ImU32 color) {
+  ImVec4 c = ImGui::ColorConvertU32ToFloat4(color);
+  for (float* part : {&c.x, &c.y, &c.z}) *part *= 0.72f;
+  return ImGui::ColorConvertFloat4ToU32(c);
+}
+
+// What stands out on dark would be pale on light.
+ImU32 plotted(ImU32 color) {
+  const ImVec4& ground = ImGui::GetStyle().Colors[ImGuiCol_WindowBg];
+  return ground.x < 0.5f ? color : darker(color);
 }
 
 }  // namespace
@@ -78,9 +107,8 @@ Theme make_theme(float scale, float pixel_ratio) {
   theme.fonts.large = load("DejaVuSans.ttf", kLargeSize * pixels);
   ImGui::GetIO().FontGlobalScale = 1 / pixel_ratio;
 
-  ImGui::StyleColorsDark();
+  set_colors(ColorScheme::kDark);
   ImGuiStyle& style = ImGui::GetStyle();
-  set_colors(style);
   style.WindowPadding = {14, 12};
   style.FramePadding = {9, 4};
   style.ItemSpacing = {8, 6};
@@ -96,20 +124,55 @@ Theme make_theme(float scale, float pixel_ratio) {
   return theme;
 }
 
+void set_colors(ColorScheme scheme) {
+  ImVec4* c = ImGui::GetStyle().Colors;
+  if (scheme == ColorScheme::kDark) {
+    ImGui::StyleColorsDark();
+    set_dark_colors(c);
+  } else {
+    ImGui::StyleColorsLight();
+    set_light_colors(c);
+  }
+  const ImVec4 accent = c[ImGuiCol_CheckMark];
+  const auto see_through = [&](float alpha) { return ImVec4(accent.x, accent.y, accent.z, alpha); };
+  c[ImGuiCol_ChildBg] = c[ImGuiCol_ScrollbarBg] = {0, 0, 0, 0};
+  c[ImGuiCol_Header] = see_through(0.20f);
+  c[ImGuiCol_HeaderHovered] = see_through(0.13f);
+  c[ImGuiCol_HeaderActive] = see_through(0.28f);
+  c[ImGuiCol_PlotHistogram] = c[ImGuiCol_SliderGrab] = c[ImGuiCol_SliderGrabActive] = accent;
+  c[ImGuiCol_Separator] = c[ImGuiCol_Border];
+  c[ImGuiCol_TextSelectedBg] = see_through(0.35f);
+}
+
 ImU32 technique_color(std::size_t technique) {
   constexpr std::array<ImU32, 11> kColors = {
       IM_COL32(92, 160, 255, 255),  IM_COL32(255, 170, 64, 255),  IM_COL32(92, 211, 141, 255),
       IM_COL32(232, 104, 160, 255), IM_COL32(170, 132, 255, 255), IM_COL32(72, 207, 214, 255),
       IM_COL32(236, 224, 92, 255),  IM_COL32(240, 112, 88, 255),  IM_COL32(152, 190, 96, 255),
       IM_COL32(204, 160, 128, 255), IM_COL32(160, 170, 190, 255)};
-  return kColors[technique % kColors.size()];
+  return plotted(kColors[technique % kColors.size()]);
 }
 
 ImU32 stage_color(std::size_t stage) {
   constexpr std::array<ImU32, 4> kColors = {
       IM_COL32(150, 126, 230, 255), IM_COL32(240, 162, 74, 255), IM_COL32(84, 150, 240, 255),
       IM_COL32(96, 196, 140, 255)};
-  return kColors[stage % kColors.size()];
+  return plotted(kColors[stage % kColors.size()]);
+}
+
+ImU32 accent_color() { return ImGui::GetColorU32(ImGuiCol_CheckMark); }
+ImU32 text_color() { return ImGui::GetColorU32(ImGuiCol_Text); }
+ImU32 dim_color() { return ImGui::GetColorU32(ImGuiCol_TextDisabled); }
+ImU32 sunken_color() { return ImGui::GetColorU32(kSunkenSlot); }
+ImU32 line_color() { return ImGui::GetColorU32(kLineSlot); }
+ImU32 error_color() { return ImGui::GetColorU32(kErrorSlot); }
+ImU32 warning_color() { return ImGui::GetColorU32(kWarningSlot); }
+ImU32 floating_color() { return ImGui::GetColorU32(kFloatingSlot); }
+
+ImU32 faded(ImU32 color, float part) {
+  ImVec4 c = ImGui::ColorConvertU32ToFloat4(color);
+  c.w *= part;
+  return ImGui::ColorConvertFloat4ToU32(c);
 }
 
 }  // namespace mdk

@@ -5,6 +5,8 @@
 
 #include <cstddef>
 
+#include "viewer/state/color_scheme.h"
+
 namespace mdk {
 
 struct Fonts {
@@ -19,9 +21,12 @@ struct Theme {
   float scale = 1;  ///< window coordinates per unit of design
 };
 
-/// Loads fonts and sets colours and sizes: dark, rounded. `scale` as Window::ui_scale(),
+/// Loads fonts and sets sizes and dark colours; rounded. `scale` as Window::ui_scale(),
 /// `pixel_ratio` as Window::pixel_ratio(). Call once, before the first frame.
 Theme make_theme(float scale, float pixel_ratio);
+
+/// Between frames, at any time.
+void set_colors(ColorScheme scheme);
 
 /// One colour per row of the technique table, the same wherever a technique is drawn.
 ImU32 technique_color(std::size_t technique);
@@ -29,13 +34,16 @@ ImU32 technique_color(std::size_t technique);
 /// Colours of the parts of a frame: pose, update, trace, shade.
 ImU32 stage_color(std::size_t stage);
 
-inline constexpr ImU32 kAccentColor = IM_COL32(92, 160, 255, 255);
-inline constexpr ImU32 kTextColor = IM_COL32(226, 230, 238, 255);
-inline constexpr ImU32 kDimColor = IM_COL32(139, 147, 163, 255);
-inline constexpr ImU32 kSunkenColor = IM_COL32(16, 18, 23, 255);
-inline constexpr ImU32 kLineColor = IM_COL32(255, 255, 255, 22);
-inline constexpr ImU32 kErrorColor = IM_COL32(122, 38, 44, 245);
-inline constexpr ImU32 kWarningColor = IM_COL32(240, 190, 90, 255);
-inline constexpr ImU32 kFloatingColor = IM_COL32(30, 33, 41, 245);
+// Those of the scheme that was set, for what the panel draws itself.
+ImU32 accent_color();
+ImU32 text_color();
+ImU32 dim_color();
+ImU32 sunken_color();
+ImU32 line_color();
+ImU32 error_color();
+ImU32 warning_color();
+ImU32 floating_color();
+/// `color` with its opacity times `part`.
+ImU32 faded(ImU32 color, float part);
 
 }  // namespace mdk

@@ -104,8 +104,7 @@ void draw_key_ticks(const Rect& track, const Theme& theme, const Playback& playb
     const bool tall = (i / stride) % 5 == 0;
     const float top = track.y + track.height * (tall ? 0.25f : 0.42f);
     draw.AddLine({x, top}, {x, track.y + track.height * 0.75f},
-                 tall ? IM_COL32(150, 160, 180, 190) : IM_COL32(120, 128, 146, 110),
-                 1.2f * theme.scale);
+                 faded(dim_color(), tall ? 1.0f : 0.6f), 1.2f * theme.scale);
   }
 }
 
@@ -116,7 +115,8 @@ void draw_track(const Theme& theme, Playback& playback, UiResult& result) {
   ImGui::InvisibleButton("##time-line", size);
   record(result.widgets, "time-line");
   ImDrawList& draw = *ImGui::GetWindowDrawList();
-  draw.AddRectFilled(corner, {corner.x + size.x, corner.y + size.y}, kSunkenColor, 5 * theme.scale);
+  draw.AddRectFilled(corner, {corner.x + size.x, corner.y + size.y}, sunken_color(),
+                     5 * theme.scale);
   if (playback.clips().empty()) return;
 
   const float inset = 10 * theme.scale;
@@ -131,13 +131,13 @@ void draw_track(const Theme& theme, Playback& playback, UiResult& result) {
 
   const double part = playback.seconds() > 0 ? playback.time() / playback.seconds() : 0;
   const float head = track.x + track.width * static_cast<float>(part);
-  draw.AddRectFilled({corner.x, corner.y}, {head, corner.y + size.y}, IM_COL32(92, 160, 255, 34),
+  draw.AddRectFilled({corner.x, corner.y}, {head, corner.y + size.y}, faded(accent_color(), 0.13f),
                      5 * theme.scale, ImDrawFlags_RoundCornersLeft);
   draw_key_ticks(track, theme, playback);
-  draw.AddLine({head, corner.y}, {head, corner.y + size.y}, kAccentColor, 2 * theme.scale);
+  draw.AddLine({head, corner.y}, {head, corner.y + size.y}, accent_color(), 2 * theme.scale);
   const float knob = 5.5f * theme.scale;
   draw.AddTriangleFilled({head - knob, corner.y}, {head + knob, corner.y},
-                         {head, corner.y + 1.5f * knob}, kAccentColor);
+                         {head, corner.y + 1.5f * knob}, accent_color());
 }
 
 }  // namespace

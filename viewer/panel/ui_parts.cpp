@@ -15,11 +15,12 @@ void heading(const Theme& theme, const char* title) {
   ImGui::PushFont(theme.fonts.strong);
   const float size = ImGui::GetFontSize() * 0.76f;
   const ImVec2 corner = ImGui::GetCursorScreenPos();
-  ImGui::GetWindowDrawList()->AddText(theme.fonts.strong, size, corner, kDimColor, title);
+  ImGui::GetWindowDrawList()->AddText(theme.fonts.strong, size, corner, dim_color(), title);
   const ImVec2 extent = theme.fonts.strong->CalcTextSizeA(size, 1e4f, 0, title);
   const float y = std::floor(corner.y + extent.y / 2) + 0.5f;
   ImGui::GetWindowDrawList()->AddLine({corner.x + extent.x + 9 * theme.scale, y},
-                                      {corner.x + ImGui::GetContentRegionAvail().x, y}, kLineColor);
+                                      {corner.x + ImGui::GetContentRegionAvail().x, y},
+                                      line_color());
   ImGui::PopFont();
   ImGui::Dummy({0, size});
 }
@@ -40,7 +41,7 @@ std::optional<std::size_t> segmented_buttons(const std::vector<ButtonSegment>& s
   std::optional<std::size_t> clicked;
   for (std::size_t i = 0; i < segments.size(); ++i) {
     if (i > 0) ImGui::SameLine(0, kGap);
-    ImVec4 accent = ImGui::ColorConvertU32ToFloat4(kAccentColor);
+    ImVec4 accent = ImGui::ColorConvertU32ToFloat4(accent_color());
     accent.w = 0.45f;
     if (i == chosen) ImGui::PushStyleColor(ImGuiCol_Button, accent);
     if (i == chosen) ImGui::PushStyleColor(ImGuiCol_ButtonHovered, accent);
@@ -62,18 +63,18 @@ bool icon_button(const char* id, Icon icon, const ImVec2& size) {
   const auto triangle = [&](float tip, float base) {
     const ImVec2 a{c.x + base, c.y - r * 1.1f}, b{c.x + base, c.y + r * 1.1f}, t{c.x + tip, c.y};
     // Anti-aliased fills want clockwise corners.
-    tip > base ? draw.AddTriangleFilled(a, t, b, kTextColor)
-               : draw.AddTriangleFilled(a, b, t, kTextColor);
+    tip > base ? draw.AddTriangleFilled(a, t, b, text_color())
+               : draw.AddTriangleFilled(a, b, t, text_color());
   };
   const auto chevron = [&](float tip) {
     const std::array<ImVec2, 3> points = {ImVec2(c.x - tip * 0.5f, c.y - r),
                                           ImVec2(c.x + tip * 0.5f, c.y),
                                           ImVec2(c.x - tip * 0.5f, c.y + r)};
-    draw.AddPolyline(points.data(), static_cast<int>(points.size()), kTextColor, ImDrawFlags_None,
+    draw.AddPolyline(points.data(), static_cast<int>(points.size()), text_color(), ImDrawFlags_None,
                      r * 0.45f);
   };
   const auto bar = [&](float from, float to) {
-    draw.AddRectFilled({c.x + from, c.y - r * 1.1f}, {c.x + to, c.y + r * 1.1f}, kTextColor,
+    draw.AddRectFilled({c.x + from, c.y - r * 1.1f}, {c.x + to, c.y + r * 1.1f}, text_color(),
                        r * 0.2f);
   };
   switch (icon) {

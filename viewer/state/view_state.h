@@ -11,6 +11,7 @@
 #include "common/trace/shading.h"
 #include "formats/mdk_view.h"
 #include "viewer/scene/scene_loader.h"
+#include "viewer/state/color_scheme.h"
 #include "viewer/state/frame_history.h"
 #include "viewer/state/hand_pose.h"
 #include "viewer/state/layout.h"
@@ -34,6 +35,7 @@ struct ViewSettings {
   Resolution resolution = Resolution::kAuto;
   bool count_work = false;    ///< trace an extra counting frame now and then
   bool keep_tracing = false;  ///< trace again although nothing has changed, to watch the times
+  ColorScheme colors = ColorScheme::kDark;
 
   /// To another row of the table, around its ends.
   void step_technique(int by);
@@ -65,6 +67,7 @@ struct ViewState {
   ViewSettings settings;
   Playback playback;
   OrbitCamera camera;
+  bool turntable = false;  ///< the camera goes slowly round
   HandPose hand;  ///< of a file with a skeleton; inactive for others
 
   std::optional<FrameReport> last_frame;
@@ -77,6 +80,8 @@ struct ViewState {
   PanelMode panel = PanelMode::kShown;
   bool help_open = false;
 
+  /// Whether the picture changes by itself as time passes.
+  bool moves() const { return file && (playback.playing() || turntable); }
   const Model* model() const { return file ? &file->model() : nullptr; }
 };
 

@@ -165,7 +165,8 @@ float Window::ui_scale() const {
 
 void Window::begin_frame() {
   glViewport(0, 0, framebuffer_width(), framebuffer_height());
-  glClearColor(0.07f, 0.075f, 0.09f, 1);
+  const ImVec4& ground = ImGui::GetStyle().Colors[ImGuiCol_WindowBg];
+  glClearColor(ground.x, ground.y, ground.z, 1);
   glClear(GL_COLOR_BUFFER_BIT);
   ImGui_ImplOpenGL3_NewFrame();
   ImGui_ImplGlfw_NewFrame();

@@ -1,0 +1,133 @@
+// App: what keys, buttons and menus ask for.
+#include <filesystem>
+
+#include "formats/image_writer.h"
+#include "viewer/app.h"
+#include "viewer/picture/picture_name.h"
+#include "viewer/picture/render_command.h"
+
+namespace mdk {
+
+void App::execute(const Action& action) {
+  redraws_ = kSettlingDraws;
+  Playback& playback = state_.playback;
+  switch (action.command) {
+    case Command::kPlayPause:
+      playback.toggle();
+      break;
+    case Command::kPreviousKey:
+      playback.step_key(StepDirection::kBack);
+      break;
+    case Command::kNextKey:
+      playback.step_key(StepDirection::kForward);
+      break;
+    case Command::kStart:
+      playback.go_to_start();
+      break;
+    case Command::kEnd:
+      playback.go_to_end();
+      break;
+    case Command::kPreviousTechnique:
+      state_.settings.step_technique(-1);
+      break;
+    case Command::kNextTechnique:
+      state_.settings.step_technique(+1);
+      break;
+    case Command::kTechniqueByNumber:
+      if (action.number < technique_table().size()) state_.settings.technique = action.number;
+      break;
+    case Command::kNextShading:
+      state_.settings.next_shading();
+      break;
+    case Command::kFit:
+      if (state_.file) state_.camera.fit(state_.file->model().bounds, picture_aspect());
+      break;
+    case Command::kResetView:
+      reset_view();
+      break;
+    case Command::kSavePicture:
+      save_picture();
+      break;
+    case Command::kSaveWindow:
+      save_window_ = true;
+      break;
+    case Command::kCopyCommand:
+      if (state_.file) copy_render_command();
+      break;
+    case Command::kCancelBake:
+      loader_.cancel();
+      break;
+    case Command::kToggleTurntable:
+      state_.turntable = !state_.turntable;
+      break;
+    case Command::kToggleColors:
+      state_.settings.colors =
+          state_.settings.colors == ColorScheme::kDark ? ColorScheme::kLight : ColorScheme::kDark;
+      break;
+    case Command::kTogglePanel:
+      state_.panel = state_.panel == PanelMode::kShown ? PanelMode::kHidden : PanelMode::kShown;
+      break;
+    case Command::kToggleHelp:
+      state_.help_open = !state_.help_open;
+      break;
+    case Command::kDismiss:
+      if (state_.help_open)
+        state_.help_open = false;
+      else if (!state_.error.empty())
+        state_.error.clear();
+      else if (state_.baking)
+        loader_.cancel();
+      else
+        quit_ = true;
+      break;
+    case Command::kQuit:
+      quit_ = true;
+      break;
+  }
+}
+
+void App::reset_view() {
+  if (!state_.file) return;
+  const Aabb& bounds = state_.file->model().bounds;
+  state_.camera.set(fit_camera(bounds, picture_aspect()), bounds);
+}
+
+std::string App::render_command_of_picture() const {
+  if (!state_.file || state_.hand.active) return {};
+  const Playback& playback = state_.playback;
+  return render_command(wanted_job(), state_.path, playback.clips()[playback.clip()].name,
+                        playback.time());
+}
+
+void App::copy_render_command() {
+  const std::string command = render_command_of_picture();
+  if (!command.empty()) window_.set_clipboard(command);
+  show_notice(command.empty() ? "No mdprep command makes this picture: it is posed by hand"
+                              : "Copied the mdprep command that renders this picture");
+}
+
+void App::save_picture() {
+  if (shown_.pixels.empty())
+    show_notice("There is no picture to save yet");
+  else
+    save(shown_);
+}
+
+void App::save_window() {
+  save_window_ = false;
+  save(window_.read_pixels());
+}
+
+void App::save(const Picture& picture) {
+  try {
+    const std::string name = free_picture_name(
+        state_.file ? std::filesystem::path(state_.file_name).stem().string() : "mdview");
+    write_png(name, picture.width, picture.height, picture.pixels);
+    show_notice("Saved " + name + " (" + std::to_string(picture.width) + " x " +
+                std::to_string(picture.height) + ")");
+  } catch (const Error& error) {
+    show_error(error);
+  }
+}
+
+}  // namespace mdk
