@@ -17,14 +17,16 @@ trap 'rm -rf "$work"' EXIT
 view=("$bin/mdview" "$work/hand.mdk" --size 1280x800
       --camera "0.19 0.16 0.40 0.011 0.052 0.018 0 1 0 36")
 
-# The same window tells beforehand where everything will be.
-"${view[@]}" --quit-after 2 --print-state > "$work/widgets.json"
+# The same window tells beforehand where everything will be, page by page of the panel.
+for tab in cost view; do
+  "${view[@]}" --tab $tab --quit-after 2 --print-state > "$work/$tab.json"
+done
 click() {
   local at
   at=$(python3 -c '
 import json, sys
 x, y, width, height = json.load(open(sys.argv[1]))["widgets"][sys.argv[2]]
-print(int(x + width / 2), int(y + height / 2))' "$work/widgets.json" "$1")
+print(int(x + width / 2), int(y + height / 2))' "$work/${2:-view}.json" "$1")
   # shellcheck disable=SC2086  # two words
   xdotool mousemove $at sleep 0.2 click 1
 }
@@ -33,7 +35,9 @@ print(int(x + width / 2), int(y + height / 2))' "$work/widgets.json" "$1")
 viewer=$!
 xdotool search --sync --onlyvisible --name mdview > "$work/window"
 sleep 1
-click count-work
+click tab:cost
+click count-work cost
+click tab:view
 click play
 for technique in static-kdtree rebuild-bvh refit-bvh fuzzy-kdtree; do
   click "technique:$technique"

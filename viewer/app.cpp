@@ -41,6 +41,7 @@ App::App(const ViewerOptions& options)
   state_.settings.colors = options_.colors;
   state_.settings.samples = options_.samples;
   state_.settings.occlusion_rays = options_.occlusion_rays;
+  state_.tab = options_.tab;
   if (!options_.file.empty()) loader_.load({options_.file});
 }
 
@@ -56,9 +57,7 @@ void App::show_loaded_scene() {
   state_.file = std::move(scene->file);
   state_.path = scene->path;
   state_.file_name = std::filesystem::path(scene->path).filename().string();
-  state_.last_frame.reset();
-  state_.last_work.reset();
-  state_.history.clear();
+  state_.forget_frames();
   state_.error.clear();
   shown_ = {};
   full_picture_ms_ = 0;
@@ -153,14 +152,12 @@ void App::show_finished_frame() {
   blit_.upload(frame->pixels, job.request.width, job.request.height);
   shown_ = {job.request.width, job.request.height, std::move(frame->pixels)};
   if (job.request.counting == Counting::kOn) {
-    state_.last_work = WorkReport{job.technique, frame->stats.rays, frame->stats.counters};
+    state_.note_work({job.technique, frame->stats.rays, frame->stats.counters});
     return;
   }
-  state_.last_frame =
-      FrameReport{job.technique,          job.request.width, job.request.height, frame->stats,
-                  frame->structure_bytes, frame->note,       frame->heat};
   const double ms = frame->stats.time_to_image_ms();
-  state_.history.add({job.technique, ms});
+  state_.note_frame({job.technique, job.request.width, job.request.height, frame->stats,
+                     frame->structure_bytes, frame->note, frame->heat});
   const PixelRect full = picture_pixels();
   full_picture_ms_ = ms * (static_cast<double>(full.width) * full.height) /
                      (static_cast<double>(job.request.width) * job.request.height);

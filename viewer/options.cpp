@@ -70,6 +70,13 @@ ColorScheme parse_theme(const std::string& text) {
   throw usage("--theme \"" + text + "\": give dark or light");
 }
 
+std::string tab_ids() {
+  std::string ids;
+  for (const PanelTabInfo& info : panel_tab_table())
+    ids += (ids.empty() ? "" : ", ") + std::string(info.id);
+  return ids;
+}
+
 void check(const ViewerOptions& options) {
   if (!options.technique.empty()) find_technique(options.technique);
   if (!std::isfinite(options.time) || options.time < 0)
@@ -81,7 +88,7 @@ void check(const ViewerOptions& options) {
 
 std::optional<ViewerOptions> parse_options(int argc, const char* const* argv, std::ostream& out) {
   ViewerOptions options;
-  std::string size, shading, camera, theme;
+  std::string size, shading, camera, theme, tab;
   bool play = false;
 
   CLI::App app{"mdview: look at an animated model in an .mdk file while it is ray traced.",
@@ -105,6 +112,7 @@ std::optional<ViewerOptions> parse_options(int argc, const char* const* argv, st
   app.add_flag("--play", play, "start playing");
   app.add_option("--camera", camera,
                  "ten numbers: eye xyz, target xyz, up xyz, vertical field of view in degrees");
+  app.add_option("--tab", tab, "page of the side panel to start with: " + tab_ids() + " (view)");
   app.add_option("--threads", options.threads, "threads for tracing (all)");
   app.add_option("--isa", options.isa, "use no more than sse4, avx2, avx512 or neon (the best)");
   app.add_option("--screenshot", options.screenshot,
@@ -128,6 +136,7 @@ std::optional<ViewerOptions> parse_options(int argc, const char* const* argv, st
   if (!shading.empty()) options.shading = find_shading(shading);
   if (!camera.empty()) options.camera = parse_camera(camera);
   if (!theme.empty()) options.colors = parse_theme(theme);
+  if (!tab.empty()) options.tab = find_panel_tab(tab);
   if (play) options.start = StartMode::kPlaying;
   check(options);
   return options;

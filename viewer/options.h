@@ -9,6 +9,7 @@
 #include "common/trace/camera.h"
 #include "common/trace/shading.h"
 #include "viewer/state/color_scheme.h"
+#include "viewer/state/panel_tab.h"
 
 namespace mdk {
 
@@ -37,6 +38,7 @@ struct ViewerOptions {
   int threads = 0;               ///< 0: all
   std::string isa;               ///< empty: the best there is
   std::string screenshot;        ///< where to write the whole window at the end
+  PanelTab tab = PanelTab::kView;
   std::uint64_t quit_after = 0;  ///< finished frames shown; 0: stay
   bool print_state = false;
 };

@@ -103,6 +103,7 @@ std::string state_json(const ViewState& state, const WindowReport& window) {
   json["theme"] = state.settings.colors == ColorScheme::kDark ? "dark" : "light";
   json["turntable"] = state.turntable;
   json["counting"] = state.settings.count_work;
+  json["cost_columns"] = state.settings.cost_columns == CostColumns::kTimes ? "times" : "work";
   json["camera"] = camera_json(state.camera.camera());
   json["pose_by_hand"] = hand_json(state);
   json["frames_shown"] = window.frames_shown;
@@ -110,6 +111,7 @@ std::string state_json(const ViewState& state, const WindowReport& window) {
   json["last_frame"] = frame_json(state);
   json["help"] = state.help_open;
   json["panel"] = state.panel == PanelMode::kShown;
+  json["tab"] = panel_tab_id(state.tab);
   json["error"] = state.error.empty() ? Json() : Json(state.error);
   json["notice"] = state.notice.empty() ? Json() : Json(state.notice);
   json["render_command"] = window.render_command.empty() ? Json() : Json(window.render_command);

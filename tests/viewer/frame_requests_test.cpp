@@ -59,6 +59,17 @@ TEST(RequestPolicy, CountsOnceAtRestAfterATimedFrame) {
   EXPECT_FALSE(policy.next(job_at(0), {.now = 6, .count_work = true}));
 }
 
+TEST(RequestPolicy, TimesAPictureThatWasFirstCounted) {
+  RequestPolicy policy;
+  const auto counting = policy.next(job_at(0), {.now = 5, .count_work = true});
+  ASSERT_TRUE(counting);
+  EXPECT_EQ(counting->request.counting, Counting::kOn);
+  const auto timed = policy.next(job_at(0), {.now = 5.1, .count_work = true});
+  ASSERT_TRUE(timed);
+  EXPECT_EQ(timed->request.counting, Counting::kOff);
+  EXPECT_FALSE(policy.next(job_at(0), {.now = 6, .count_work = true}));
+}
+
 TEST(RequestPolicy, CountsNowAndThenWhilePicturesChange) {
   RequestPolicy policy;
   int counting = 0;

@@ -59,12 +59,19 @@ std::unique_ptr<MdviewSession> MdviewGui::start(const std::vector<std::string>& 
 
 std::unique_ptr<MdviewSession> MdviewGui::start_on_bar(std::vector<std::string> words) {
   words.insert(words.begin(), {"bar.mdk", "--size", "1280x800"});
-  std::vector<std::string> look = words;
-  look.insert(look.end(), {"--quit-after", "2"});
-  widgets_ = start(look)->finish().state["widgets"];
+  learn_widgets(words);
   auto session = start(words);
   session->wait_for_window();
   return session;
+}
+
+void MdviewGui::learn_widgets(std::vector<std::string> words) {
+  words.insert(words.end(), {"--quit-after", "2"});
+  widgets_.update(start(words)->finish().state["widgets"]);
+}
+
+void MdviewGui::look_at_tab(const std::string& tab) {
+  learn_widgets({"bar.mdk", "--size", "1280x800", "--tab", tab});
 }
 
 Point MdviewGui::in_widget(const std::string& name, double across, double down) {

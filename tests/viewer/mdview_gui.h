@@ -40,6 +40,13 @@ class MdviewGui : public testing::Test {
   /// A session on the bar that is ready for clicks; learns first where the widgets are.
   std::unique_ptr<MdviewSession> start_on_bar(std::vector<std::string> words = {});
 
+  /// Where widgets are in a window started like this; what is known of others stays. Call it before
+  /// a session starts.
+  void learn_widgets(std::vector<std::string> words);
+
+  /// Where the widgets of another page of the panel are. Call it before a session starts.
+  void look_at_tab(const std::string& tab);
+
   /// A point inside a widget: parts of its width and height.
   Point in_widget(const std::string& name, double across = 0.5, double down = 0.5);
 
@@ -47,7 +54,7 @@ class MdviewGui : public testing::Test {
 
   TempFolder folder_;
   std::unique_ptr<XServer> server_;
-  nlohmann::json widgets_;
+  nlohmann::json widgets_ = nlohmann::json::object();
 };
 
 }  // namespace mdk::test

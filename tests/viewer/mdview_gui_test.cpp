@@ -14,6 +14,7 @@
 #include "tests/formats/temp_folder.h"
 #include "tests/viewer/waving_bar.h"
 #include "tests/viewer/x_drop.h"
+#include "viewer/state/panel_tab.h"
 
 namespace mdk::test {
 namespace {
@@ -69,18 +70,21 @@ TEST_F(MdviewGui, EveryTechniqueOfOursShowsTheSamePicture) {
 }
 
 TEST_F(MdviewGui, ClicksOnThePanelActOnTheNextFrame) {
+  look_at_tab("cost");
   const auto session = start_on_bar();
   session->click(in_widget("technique:rebuild-bvh"));
   session->click(in_widget("shading:clusters"));
   session->click(in_widget("resolution:half"));
-  session->click(in_widget("count-work"));
   session->click(in_widget("time-line", 0.5));
+  session->click(in_widget("tab:cost"));
+  session->click(in_widget("count-work"));
   const auto result = session->quit();
   EXPECT_EQ(result.status, 0);
   const json& state = result.state;
   EXPECT_EQ(state["technique"], "rebuild-bvh");
   EXPECT_EQ(state["shading"], "clusters");
   EXPECT_EQ(state["resolution"], "1/2");
+  EXPECT_EQ(state["tab"], "cost");
   EXPECT_NEAR(state["time"], 0.5, 0.01);
   const json& frame = state["last_frame"];
   EXPECT_EQ(frame["technique"], "rebuild-bvh");
@@ -89,6 +93,22 @@ TEST_F(MdviewGui, ClicksOnThePanelActOnTheNextFrame) {
   EXPECT_EQ(frame["height"], picture[3].get<int>() / 2);
   EXPECT_GT(frame["node_visits_per_ray"], 0);
   EXPECT_GT(frame["triangle_tests_per_ray"], 0);
+}
+
+TEST_F(MdviewGui, EveryPageOfThePanelFitsAWindowOf1280x800) {
+  for (const PanelTabInfo& info : panel_tab_table()) {
+    const std::string tab(info.id);
+    const auto state = start({"bar.mdk", "--size", "1280x800", "--technique", "auto", "--shading",
+                              "boxes", "--tab", tab, "--quit-after", "2"})
+                           ->finish()
+                           .state;
+    EXPECT_EQ(state["tab"], tab);
+    const double room = state["widgets"]["page"][3], height = state["widgets"]["page-content"][3];
+    EXPECT_GT(height, 0.2 * room) << tab;
+    EXPECT_LE(height, room) << tab;
+    const json& footer = state["widgets"]["history"];
+    EXPECT_LE(footer[1].get<double>() + footer[3].get<double>(), 800) << tab;
+  }
 }
 
 TEST_F(MdviewGui, PlayRunsUntilPauseAndTheTimeLineCanBeDragged) {

@@ -73,7 +73,7 @@ void draw_stage_bar(const Theme& theme, std::span<const FrameStage> stages) {
 void draw_history_plot(const Theme& theme, const FrameHistory& history) {
   ImDrawList& draw = *ImGui::GetWindowDrawList();
   const ImVec2 lo = ImGui::GetCursorScreenPos();
-  const ImVec2 size{ImGui::GetContentRegionAvail().x, 60 * theme.scale};
+  const ImVec2 size{ImGui::GetContentRegionAvail().x, 46 * theme.scale};
   const ImVec2 hi{lo.x + size.x, lo.y + size.y};
   ImGui::InvisibleButton("##history", size);
   const bool hovered = ImGui::IsItemHovered();

@@ -30,9 +30,11 @@ std::string bytes_text(std::uint64_t bytes) {
   return fixed(value, value < 100 ? 1 : 0) + " " + kUnits[unit];
 }
 
-std::string milliseconds_text(double ms) {
-  return fixed(ms, ms < 9.995 ? 2 : ms < 99.95 ? 1 : 0) + " ms";
+std::string short_number(double value) {
+  return fixed(value, value < 9.995 ? 2 : value < 99.95 ? 1 : 0);
 }
+
+std::string milliseconds_text(double ms) { return short_number(ms) + " ms"; }
 
 std::string rate_text(double per_second) {
   if (per_second >= 1e9) return fixed(per_second / 1e9, 2) + " G";

@@ -12,7 +12,10 @@ std::string grouped(std::uint64_t count);
 /// "9.1 MiB", "512 B"
 std::string bytes_text(std::uint64_t bytes);
 
-/// Three significant digits: "0.04 ms", "3.21 ms", "128 ms"
+/// Three significant digits: "0.04", "3.21", "128"
+std::string short_number(double value);
+
+/// "0.04 ms", "3.21 ms", "128 ms"
 std::string milliseconds_text(double ms);
 
 /// "12.3 M", "940 k", "87"

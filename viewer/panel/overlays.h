@@ -2,7 +2,9 @@
 // keys.
 #pragma once
 
-#include "viewer/panel/side_panel.h"
+#include "viewer/panel/style.h"
+#include "viewer/panel/ui_result.h"
+#include "viewer/state/view_state.h"
 
 namespace mdk {
 

@@ -1,7 +1,9 @@
 // PosePanel: over the picture of a file that can be posed by hand, its joints and their turns.
 #pragma once
 
-#include "viewer/panel/side_panel.h"
+#include "viewer/panel/style.h"
+#include "viewer/panel/ui_result.h"
+#include "viewer/state/view_state.h"
 
 namespace mdk {
 

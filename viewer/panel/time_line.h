@@ -1,7 +1,9 @@
 // TimeLine: the bar below the picture: play, step, loop, speed, clip, and the keys to scrub along.
 #pragma once
 
-#include "viewer/panel/side_panel.h"
+#include "viewer/panel/style.h"
+#include "viewer/panel/ui_result.h"
+#include "viewer/state/view_state.h"
 
 namespace mdk {
 

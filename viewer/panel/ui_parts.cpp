@@ -54,6 +54,18 @@ std::optional<std::size_t> segmented_buttons(const std::vector<ButtonSegment>& s
   return clicked;
 }
 
+void button_row(const std::vector<CommandButton>& buttons, UiResult& result) {
+  const auto count = static_cast<float>(buttons.size());
+  const float gap = ImGui::GetStyle().ItemSpacing.x;
+  const float width = std::floor((ImGui::GetContentRegionAvail().x - gap * (count - 1)) / count);
+  for (std::size_t i = 0; i < buttons.size(); ++i) {
+    if (i > 0) ImGui::SameLine();
+    if (ImGui::Button(buttons[i].label, {width, 0})) result.actions.push_back({buttons[i].command});
+    record(result.widgets, buttons[i].id);
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", buttons[i].tip);
+  }
+}
+
 bool icon_button(const char* id, Icon icon, const ImVec2& size) {
   const bool clicked = ImGui::Button(id, size);
   const ImVec2 lo = ImGui::GetItemRectMin(), hi = ImGui::GetItemRectMax();

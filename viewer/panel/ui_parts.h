@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "viewer/panel/style.h"
-#include "viewer/state/widget_map.h"
+#include "viewer/panel/ui_result.h"
 
 namespace mdk {
 
@@ -29,6 +29,17 @@ struct ButtonSegment {
 /// Buttons side by side over the whole width, one of them chosen; the one that was clicked now.
 std::optional<std::size_t> segmented_buttons(const std::vector<ButtonSegment>& segments,
                                              std::size_t chosen, WidgetMap& widgets);
+
+/// A button that asks for a command.
+struct CommandButton {
+  const char* id;  ///< as recorded
+  const char* label;
+  const char* tip;
+  Command command;
+};
+
+/// Equally wide, side by side over the whole width.
+void button_row(const std::vector<CommandButton>& buttons, UiResult& result);
 
 enum class Icon { kPlay, kPause, kPreviousKey, kNextKey, kStart, kEnd };
 

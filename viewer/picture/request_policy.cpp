@@ -9,13 +9,16 @@ std::optional<RenderJob> RequestPolicy::next(const RenderJob& wanted, const Situ
   const bool uncounted = !counted_ || !same_picture(*counted_, wanted);
   const bool counts = situation.count_work && uncounted &&
                       (!changed || situation.now - last_count_ >= kCountSeconds);
-  if (!changed && !counts && !situation.keep_tracing) return {};
+  const bool untimed = !timed_ || !same_picture(*timed_, wanted);
+  if (!changed && !counts && !untimed && !situation.keep_tracing) return {};
 
   RenderJob job = wanted;
   if (counts) {
     job.request.counting = Counting::kOn;
     counted_ = job;
     last_count_ = situation.now;
+  } else {
+    timed_ = job;
   }
   failed_ = false;
   requested_ = job;

@@ -9,7 +9,7 @@ namespace mdk {
 
 /// Asks for a picture when the wanted one is not the one asked for last, and for nothing while
 /// nothing changes. Counting frames go between: now and then while pictures change, and once when
-/// they have come to rest.
+/// they have come to rest; a picture that was only counted is timed as well.
 class RequestPolicy {
  public:
   static constexpr double kCountSeconds = 0.5;  ///< at least, between counting frames
@@ -28,7 +28,7 @@ class RequestPolicy {
   bool failed() const { return failed_; }
 
  private:
-  std::optional<RenderJob> requested_, counted_;
+  std::optional<RenderJob> requested_, counted_, timed_;
   double last_count_ = -kCountSeconds;
   bool failed_ = false;
 };

@@ -1,5 +1,7 @@
 #include "viewer/state/view_state.h"
 
+#include <utility>
+
 #include "common/trace/technique.h"
 
 namespace mdk {
@@ -15,6 +17,24 @@ void ViewSettings::next_shading() {
   std::size_t row = 0;
   while (row < modes.size() && modes[row].mode != shading) ++row;
   shading = modes[(row + 1) % modes.size()].mode;
+}
+
+void ViewState::note_frame(FrameReport frame) {
+  history.add({frame.technique, frame.stats.time_to_image_ms()});
+  costs[frame.technique].frame = frame;
+  last_frame = std::move(frame);
+}
+
+void ViewState::note_work(const WorkReport& work) {
+  costs[work.technique].work = work;
+  last_work = work;
+}
+
+void ViewState::forget_frames() {
+  last_frame.reset();
+  last_work.reset();
+  costs.clear();
+  history.clear();
 }
 
 }  // namespace mdk

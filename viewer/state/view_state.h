@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -16,6 +17,7 @@
 #include "viewer/state/hand_pose.h"
 #include "viewer/state/layout.h"
 #include "viewer/state/orbit_camera.h"
+#include "viewer/state/panel_tab.h"
 #include "viewer/state/playback.h"
 
 namespace mdk {
@@ -27,13 +29,17 @@ enum class Resolution {
   kAuto,  ///< full, but coarser while a hand drags and full would be late
 };
 
+/// What the table of techniques shows.
+enum class CostColumns { kTimes, kWork };
+
 struct ViewSettings {
   std::size_t technique = 0;  ///< row of technique_table()
   ShadingMode shading = ShadingMode::kDiffuse;
   std::uint32_t samples = 1;                      ///< per pixel
   std::uint32_t occlusion_rays = kOcclusionRays;  ///< per sample of lit pictures
   Resolution resolution = Resolution::kAuto;
-  bool count_work = false;    ///< trace an extra counting frame now and then
+  bool count_work = false;  ///< trace an extra counting frame now and then
+  CostColumns cost_columns = CostColumns::kTimes;
   bool keep_tracing = false;  ///< trace again although nothing has changed, to watch the times
   ColorScheme colors = ColorScheme::kDark;
 
@@ -59,6 +65,12 @@ struct WorkReport {
   TraceCounters counters;
 };
 
+/// What a technique's latest frames of this file cost.
+struct TechniqueCost {
+  FrameReport frame;
+  std::optional<WorkReport> work;  ///< where it was counted
+};
+
 struct ViewState {
   std::shared_ptr<const MdkFile> file;          ///< null: nothing is open
   std::string path;                             ///< of it, or of the source file it was baked from
@@ -68,21 +80,28 @@ struct ViewState {
   Playback playback;
   OrbitCamera camera;
   bool turntable = false;  ///< the camera goes slowly round
-  HandPose hand;  ///< of a file with a skeleton; inactive for others
+  HandPose hand;           ///< of a file with a skeleton; inactive for others
 
   std::optional<FrameReport> last_frame;
   std::optional<WorkReport> last_work;
+  std::map<std::size_t, TechniqueCost> costs;  ///< by row of technique_table()
   FrameHistory history;
   double shown_per_second = 0;
 
   std::string error;   ///< the sentence that stands in the window, else empty
   std::string notice;  ///< a short-lived message, else empty
   PanelMode panel = PanelMode::kShown;
+  PanelTab tab = PanelTab::kView;
   bool help_open = false;
 
   /// Whether the picture changes by itself as time passes.
   bool moves() const { return file && (playback.playing() || turntable); }
   const Model* model() const { return file ? &file->model() : nullptr; }
+
+  void note_frame(FrameReport frame);
+  void note_work(const WorkReport& work);
+  /// Another file is open: what frames of the last one cost counts no more.
+  void forget_frames();
 };
 
 }  // namespace mdk

@@ -1,0 +1,16 @@
+// UiResult: what one drawing of the window gathers besides pixels.
+#pragma once
+
+#include <vector>
+
+#include "viewer/commands.h"
+#include "viewer/state/widget_map.h"
+
+namespace mdk {
+
+struct UiResult {
+  WidgetMap widgets;
+  std::vector<Action> actions;  ///< asked for, to be done when the drawing is done
+};
+
+}  // namespace mdk
