@@ -25,11 +25,12 @@ inline float linear_from_srgb(std::uint32_t byte) {
 
 inline constexpr float kLastSrgbStep = 4095;
 
-/// sRGB bytes for linear light in steps from 0 to kLastSrgbStep.
-inline const std::array<std::uint8_t, 4096>& srgb_table() {
-  static const std::array<std::uint8_t, 4096> table = [] {
-    std::array<std::uint8_t, 4096> t{};
-    for (std::size_t i = 0; i < t.size(); ++i) {
+/// sRGB bytes for linear light in steps from 0 to kLastSrgbStep, then four bytes more, so that each
+/// can be fetched with three that follow it.
+inline const std::array<std::uint8_t, 4100>& srgb_table() {
+  static const std::array<std::uint8_t, 4100> table = [] {
+    std::array<std::uint8_t, 4100> t{};
+    for (std::size_t i = 0; i < 4096; ++i) {
       const double l = static_cast<double>(i) / 4095;
       const double c = l <= 0.0031308 ? 12.92 * l : 1.055 * std::pow(l, 1 / 2.4) - 0.055;
       t[i] = static_cast<std::uint8_t>(std::lround(c * 255));

@@ -1,5 +1,5 @@
-// Film: the picture in the making: linear light of one or more samples per pixel becomes sRGB
-// bytes.
+// Film: the picture in the making, tile by tile: linear light of one or more samples per pixel
+// becomes sRGB bytes, on a background darker downwards.
 #pragma once
 
 #include <cstdint>
@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "common/math/vec3.h"
+#include "common/trace/hit_buffer.h"
+#include "common/trace/kernels/film_kernel.h"
 
 namespace mdk {
 
@@ -19,14 +21,11 @@ class Film {
   /// once. Memory: 4 bytes a pixel, and 12 more where there are several samples.
   void begin(std::uint32_t width, std::uint32_t height, std::uint32_t samples);
 
-  std::uint32_t samples() const { return samples_; }
-
-  /// One sample of `count` pixels from (x, y) rightwards, linear RGB. Different pixels may be put
-  /// by different threads.
-  void put_row(std::uint32_t x, std::uint32_t y, std::uint32_t count, const float* red,
-               const float* green, const float* blue);
-  /// The same colour for all of them.
-  void put_row(std::uint32_t x, std::uint32_t y, std::uint32_t count, const Vec3f& color);
+  /// One sample of each pixel of the tile with its upper left pixel at (left, top). Different tiles
+  /// may be put by different threads.
+  void put_tile(std::uint32_t left, std::uint32_t top, const TileColors& colors);
+  /// Background only. Costs nothing where that is shown already: most of a picture stays so.
+  void put_background(std::uint32_t left, std::uint32_t top);
 
   /// Averages the samples. To be called after the last one. Runs in parallel.
   void develop();
@@ -35,9 +34,18 @@ class Film {
   std::span<const std::uint32_t> pixels() const { return pixels_; }
 
  private:
-  std::uint32_t width_ = 0, samples_ = 1;
+  struct Place {
+    std::size_t tile, first;      ///< its number, and its first pixel
+    std::uint32_t columns, rows;  ///< inside the image
+  };
+  Place place(std::uint32_t left, std::uint32_t top) const;
+
+  std::uint32_t width_ = 0, height_ = 0, samples_ = 0;
   std::vector<std::uint32_t> pixels_;
-  std::vector<Vec3f> sums_;  ///< only of several samples
+  std::vector<Vec3f> sums_;              ///< only of several samples
+  std::vector<Vec3f> background_;        ///< linear, one per row
+  std::vector<std::uint32_t> backdrop_;  ///< as pixels
+  std::vector<std::uint8_t> is_blank_;   ///< per tile: shows the background and nothing else
 };
 
 }  // namespace mdk

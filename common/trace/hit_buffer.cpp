@@ -31,7 +31,7 @@ std::uint64_t count_mismatches(const HitBuffer& a, const HitBuffer& b, Agreement
 std::uint64_t count_hits(const HitBuffer& hits) {
   std::uint64_t count = 0;
   for (std::size_t i = 0; i < hits.tile_count(); ++i) {
-    if (!hits.tile(i).written) continue;
+    if (!hits.is_hit(i)) continue;
     const std::uint32_t columns = std::min(kTileSide, hits.width() - hits.tile_left(i));
     const std::uint32_t rows = std::min(kTileSide, hits.height() - hits.tile_top(i));
     const std::uint32_t* triangle = hits.tile(i).triangle;

@@ -13,30 +13,21 @@ inline constexpr std::uint32_t kNoHit = 0xffffffffu;
 
 /// One tile's closest hits; pixel (i, j) of the tile stands at j * kTileSide + i.
 struct alignas(64) TileHits {
-  float t[kTilePixels];
+  float t[kTilePixels];  ///< infinite where nothing is hit
   std::uint32_t triangle[kTilePixels];
-  bool written = true;  ///< to be set by who writes a hit; false: no ray of the tile hits
-
-  /// No ray hits. A tile that is clear is left alone: most of a picture stays background.
-  void clear() {
-    if (!written) return;
-    written = false;
-    for (std::uint32_t i = 0; i < kTilePixels; ++i) {
-      t[i] = std::numeric_limits<float>::infinity();
-      triangle[i] = kNoHit;
-    }
-  }
 };
 
 /// A whole image of hits. Tiles at the right and lower edge reach past the image; what they hold
 /// there has no meaning.
 class HitBuffer {
  public:
+  /// Nothing is hit afterwards.
   void resize(std::uint32_t width, std::uint32_t height) {
     width_ = width;
     height_ = height;
     tiles_x_ = (width + kTileSide - 1) / kTileSide;
     tiles_.resize(static_cast<std::size_t>(tiles_x_) * ((height + kTileSide - 1) / kTileSide));
+    is_hit_.assign(tiles_.size(), 0);
   }
   std::uint32_t width() const { return width_; }
   std::uint32_t height() const { return height_; }
@@ -48,22 +39,32 @@ class HitBuffer {
   std::uint32_t tile_top(std::size_t i) const {
     return static_cast<std::uint32_t>(i / tiles_x_) * kTileSide;
   }
+  /// Whether a ray of tile `i` hits. Most of a picture is background, and its tiles are left alone:
+  /// where none hits, the tile has no meaning.
+  bool is_hit(std::size_t i) const { return is_hit_[i] != 0; }
+  void set_hit(std::size_t i, bool is_hit) { is_hit_[i] = is_hit ? 1 : 0; }
   TileHits& tile(std::size_t i) { return tiles_[i]; }
   const TileHits& tile(std::size_t i) const { return tiles_[i]; }
 
   std::uint32_t triangle(std::uint32_t x, std::uint32_t y) const {
-    return at(x, y).triangle[(y % kTileSide) * kTileSide + x % kTileSide];
+    const std::size_t i = tile_at(x, y);
+    return is_hit(i) ? tiles_[i].triangle[pixel_at(x, y)] : kNoHit;
   }
   float t(std::uint32_t x, std::uint32_t y) const {
-    return at(x, y).t[(y % kTileSide) * kTileSide + x % kTileSide];
+    const std::size_t i = tile_at(x, y);
+    return is_hit(i) ? tiles_[i].t[pixel_at(x, y)] : std::numeric_limits<float>::infinity();
   }
 
  private:
-  const TileHits& at(std::uint32_t x, std::uint32_t y) const {
-    return tiles_[static_cast<std::size_t>(y / kTileSide) * tiles_x_ + x / kTileSide];
+  std::size_t tile_at(std::uint32_t x, std::uint32_t y) const {
+    return static_cast<std::size_t>(y / kTileSide) * tiles_x_ + x / kTileSide;
+  }
+  static std::size_t pixel_at(std::uint32_t x, std::uint32_t y) {
+    return (y % kTileSide) * kTileSide + x % kTileSide;
   }
   std::uint32_t width_ = 0, height_ = 0, tiles_x_ = 0;
   std::vector<TileHits> tiles_;
+  std::vector<std::uint8_t> is_hit_;
 };
 
 /// When two hits count as the same.

@@ -131,9 +131,10 @@ void Lighting::find_origins(const LitTile& tile, Scratch& scratch) const {
         triangle != kNoHit && i % kTileSide < tile.columns && i / kTileSide < tile.rows;
     if (!scratch.is_lit[i]) continue;
     const std::uint32_t* v = tile.mesh.triangles[triangle].v;
-    const Vec3f a = tile.mesh.positions[v[0]] - center_;
-    const Vec3f ab = tile.mesh.positions[v[1]] - tile.mesh.positions[v[0]];
-    const Vec3f ac = tile.mesh.positions[v[2]] - tile.mesh.positions[v[0]];
+    const Vec3f& first = tile.mesh.vertices[v[0]].position;
+    const Vec3f a = first - center_;
+    const Vec3f ab = tile.mesh.vertices[v[1]].position - first;
+    const Vec3f ac = tile.mesh.vertices[v[2]].position - first;
     const Vec3f point = a + ab * tile.surface.bary1[i] + ac * tile.surface.bary2[i];
     const Vec3f face = normalized(cross(ab, ac));
     scratch.face_normal[i] = dot(face, eye_ - a) < 0 ? -face : face;

@@ -81,8 +81,8 @@ struct Renderer::State {
       Worker& worker = workers.local();
       for (std::size_t i = begin; i < end; ++i) {
         const TileRays tile{&rays, &pixel_from_world, hits.tile_left(i), hits.tile_top(i)};
-        hits.tile(i).clear();
-        technique->trace(tile, hits.tile(i), worker.scratch, counters_of(i, worker));
+        hits.set_hit(i,
+                     technique->trace(tile, hits.tile(i), worker.scratch, counters_of(i, worker)));
       }
     });
   }

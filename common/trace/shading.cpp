@@ -14,21 +14,9 @@
 namespace mdk {
 namespace {
 
-constexpr Vec3f kBackgroundTop{0.060f, 0.068f, 0.082f};
-constexpr Vec3f kBackgroundBottom{0.016f, 0.018f, 0.022f};
 constexpr float kAmbient = 0.12f;
 constexpr float kAmbientOfHeat = 0.7f;  ///< shape shows, colours stay those of the scale
 constexpr float kUnhitWork = 0.45f;     ///< how bright work is where nothing was hit
-
-/// One colour per row of the picture, darker downwards.
-std::vector<Vec3f> background_rows(std::uint32_t height) {
-  std::vector<Vec3f> rows(height);
-  for (std::uint32_t y = 0; y < height; ++y) {
-    const float down = (static_cast<float>(y) + 0.5f) / static_cast<float>(height);
-    rows[y] = kBackgroundTop * (1 - down) + kBackgroundBottom * down;
-  }
-  return rows;
-}
 
 }  // namespace
 
@@ -69,26 +57,35 @@ Vec3f cluster_color(std::uint32_t cluster) {
 /// One tile on its way from hits to the film.
 struct Shader::Tile {
   const TileHits* hits;
+  bool is_hit;
   std::size_t number;
   std::uint32_t left, top;      ///< in the image
   std::uint32_t columns, rows;  ///< inside the image
-  bool shows_misses = false;    ///< misses have a colour of their own on the surface
-  SurfaceTile surface{};
+  SurfaceTile& surface;
+  bool shows_misses = false;  ///< misses have a colour of their own on the surface
 
-  Tile(const HitBuffer& image, std::size_t i)
+  Tile(const HitBuffer& image, std::size_t i, SurfaceTile& place)
       : hits(&image.tile(i)),
+        is_hit(image.is_hit(i)),
         number(i),
         left(image.tile_left(i)),
         top(image.tile_top(i)),
         columns(std::min(kTileSide, image.width() - left)),
-        rows(std::min(kTileSide, image.height() - top)) {}
+        rows(std::min(kTileSide, image.height() - top)),
+        surface(place) {}
+};
+
+/// What a thread keeps between tiles.
+struct Shader::Scratch {
+  SurfaceTile surface{};
+  Lighting::Scratch lighting;
 };
 
 Shader::Shader(const Model& model)
     : model_(&model),
       triangle_cluster_(model.triangle_count()),
       is_flat_(model.triangle_count()),
-      vertex_normals_(model) {
+      vertices_(model) {
   for (std::uint32_t c = 0; c < model.cluster_count(); ++c) {
     const Cluster& cluster = model.clusters[c];
     std::fill_n(triangle_cluster_.begin() + cluster.first_triangle, cluster.triangle_count, c);
@@ -108,11 +105,10 @@ Shader::Shader(const Model& model)
   }
 }
 
-ShadedMesh Shader::shaded_mesh(const PosedMesh& mesh, ShadingMode mode) const {
+ShadedMesh Shader::shaded_mesh(ShadingMode mode) const {
   ShadedMesh shaded{};
   shaded.triangles = model_->triangles.data();
-  shaded.positions = mesh.positions().data();
-  shaded.vertex_normals = vertex_normals_.data();
+  shaded.vertices = vertices_.data();
   shaded.is_flat = is_flat_.data();
   if (mode == ShadingMode::kClusters) {
     shaded.palette = cluster_colors_.data();
@@ -126,6 +122,14 @@ ShadedMesh Shader::shaded_mesh(const PosedMesh& mesh, ShadingMode mode) const {
     if (!model_->corner_colors.empty()) shaded.corner_colors = model_->corner_colors.data();
   }
   return shaded;
+}
+
+SurfaceWishes Shader::wishes(ShadingMode mode) const {
+  const bool is_lit = mode == ShadingMode::kLit;
+  const bool shows_paint = is_lit || mode == ShadingMode::kDiffuse;
+  return {.facing = !is_lit && mode != ShadingMode::kNormals,
+          .normals = is_lit || mode == ShadingMode::kNormals,
+          .barycentrics = is_lit || (shows_paint && has_textures_)};
 }
 
 void Shader::apply_textures(Tile& tile) const {
@@ -177,7 +181,7 @@ void Shader::show_work(Tile& tile) const {
   SurfaceTile& s = tile.surface;
   const Vec3f& color = heat_.tile_color(tile.number);
   for (std::uint32_t i = 0; i < kTilePixels; ++i) {
-    const bool is_hit = tile.hits->triangle[i] != kNoHit;
+    const bool is_hit = tile.is_hit && tile.hits->triangle[i] != kNoHit;
     const float light = is_hit ? kAmbientOfHeat + (1 - kAmbientOfHeat) * s.facing[i] : kUnhitWork;
     s.red[i] = color.x * light;
     s.green[i] = color.y * light;
@@ -219,21 +223,6 @@ std::uint64_t Shader::light_from_lamps(const Lighting& lighting, const ShadedMes
   return rays;
 }
 
-void Shader::put_tile(Tile& tile, Film& film) const {
-  SurfaceTile& s = tile.surface;
-  for (std::uint32_t row = 0; row < tile.rows; ++row) {
-    const std::uint32_t first = row * kTileSide, y = tile.top + row;
-    const Vec3f& background = background_[y];
-    for (std::uint32_t i = first; !tile.shows_misses && i < first + kTileSide; ++i) {
-      const bool is_hit = tile.hits->triangle[i] != kNoHit;
-      s.red[i] = is_hit ? s.red[i] : background.x;
-      s.green[i] = is_hit ? s.green[i] : background.y;
-      s.blue[i] = is_hit ? s.blue[i] : background.z;
-    }
-    film.put_row(tile.left, y, tile.columns, s.red + first, s.green + first, s.blue + first);
-  }
-}
-
 /// Every mode but kLit.
 void Shader::show_tile(ShadingMode mode, Tile& tile) const {
   switch (mode) {
@@ -252,51 +241,42 @@ void Shader::show_tile(ShadingMode mode, Tile& tile) const {
   }
 }
 
-/// Background where tiles of a row of tiles have no hits at all.
-void Shader::put_background(const HitBuffer& hits, std::size_t first, std::size_t last,
-                            Film& film) const {
-  while (first < last) {
-    if (hits.tile(first).written) {
-      ++first;
-      continue;
-    }
-    const std::uint32_t left = hits.tile_left(first), top = hits.tile_top(first);
-    while (first < last && !hits.tile(first).written) ++first;
-    const std::uint32_t right = first < last ? hits.tile_left(first) : hits.width();
-    for (std::uint32_t y = top; y < std::min(top + kTileSide, hits.height()); ++y)
-      film.put_row(left, y, right - left, background_[y]);
-  }
+/// A tile that some ray hits, or that shows how much work it was. Returns how many rays were
+/// traced.
+std::uint64_t Shader::shade_tile(const ShadingInput& input, ShadingMode mode, Tile& tile,
+                                 Scratch& scratch) const {
+  const ShadedMesh mesh = shaded_mesh(mode);
+  if (tile.is_hit)
+    compute_surface(input.rays, tile.left, tile.top, mesh, *tile.hits, wishes(mode), tile.surface);
+  if (mode == ShadingMode::kLit)
+    return light_from_lamps(*input.lighting, mesh, scratch.lighting, tile);
+  show_tile(mode, tile);
+  return 0;
 }
 
 ShadingReport Shader::shade(const ShadingInput& input, ShadingMode mode, Film& film) {
   const HitBuffer& hits = input.hits;
-  background_ = background_rows(hits.height());
-  std::vector<std::uint32_t> tiles;
+  std::vector<std::uint32_t> hit_tiles;
   for (std::size_t i = 0; i < hits.tile_count(); ++i)
-    if (hits.tile(i).written || shows_work(mode)) tiles.push_back(static_cast<std::uint32_t>(i));
-  if (!shows_work(mode)) {
-    const std::size_t across = (hits.width() + kTileSide - 1) / kTileSide;
-    parallel_chunks(hits.tile_count(), across, [&](std::size_t begin, std::size_t end) {
-      put_background(hits, begin, end, film);
-    });
-  }
+    if (hits.is_hit(i)) hit_tiles.push_back(static_cast<std::uint32_t>(i));
+  vertices_.update(input.mesh, hits, hit_tiles);
 
-  vertex_normals_.update(input.mesh, hits, tiles);
   ShadingReport report{.heat = prepare_heat(input, mode)};
-  const ShadedMesh mesh = shaded_mesh(input.mesh, mode);
-  tbb::enumerable_thread_specific<Lighting::Scratch> scratches;
+  tbb::enumerable_thread_specific<Scratch> scratches;
   std::atomic<std::uint64_t> rays = 0;
-  parallel_chunks(tiles.size(), 4, [&](std::size_t begin, std::size_t end) {
+  parallel_chunks(hits.tile_count(), 8, [&](std::size_t begin, std::size_t end) {
+    Scratch& scratch = scratches.local();
     std::uint64_t rays_here = 0;
     for (std::size_t i = begin; i < end; ++i) {
-      Tile tile(hits, tiles[i]);
-      compute_surface(input.rays, tile.left, tile.top, mesh, *tile.hits, tile.rows, tile.surface);
-      if (mode == ShadingMode::kLit) {
-        rays_here += light_from_lamps(*input.lighting, mesh, scratches.local(), tile);
-      } else {
-        show_tile(mode, tile);
+      Tile tile(hits, i, scratch.surface);
+      if (!tile.is_hit && !shows_work(mode)) {
+        film.put_background(tile.left, tile.top);
+        continue;
       }
-      put_tile(tile, film);
+      rays_here += shade_tile(input, mode, tile, scratch);
+      const SurfaceTile& s = tile.surface;
+      film.put_tile(tile.left, tile.top,
+                    {s.red, s.green, s.blue, tile.shows_misses ? nullptr : tile.hits->triangle});
     }
     rays.fetch_add(rays_here, std::memory_order_relaxed);
   });

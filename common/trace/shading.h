@@ -14,7 +14,7 @@
 #include "common/trace/hit_buffer.h"
 #include "common/trace/kernels/surface_kernel.h"
 #include "common/trace/lighting.h"
-#include "common/trace/vertex_normals.h"
+#include "common/trace/seen_vertices.h"
 
 namespace mdk {
 
@@ -72,9 +72,11 @@ class Shader {
 
  private:
   struct Tile;
+  struct Scratch;
 
   HeatScale prepare_heat(const ShadingInput& input, ShadingMode mode);
-  ShadedMesh shaded_mesh(const PosedMesh& mesh, ShadingMode mode) const;
+  ShadedMesh shaded_mesh(ShadingMode mode) const;
+  SurfaceWishes wishes(ShadingMode mode) const;
   bool is_unlit(std::uint32_t triangle) const;
   void apply_textures(Tile& tile) const;
   void show_normals(Tile& tile) const;
@@ -83,8 +85,8 @@ class Shader {
   void show_tile(ShadingMode mode, Tile& tile) const;
   std::uint64_t light_from_lamps(const Lighting& lighting, const ShadedMesh& mesh,
                                  Lighting::Scratch& scratch, Tile& tile) const;
-  void put_tile(Tile& tile, Film& film) const;
-  void put_background(const HitBuffer& hits, std::size_t first, std::size_t last, Film& film) const;
+  std::uint64_t shade_tile(const ShadingInput& input, ShadingMode mode, Tile& tile,
+                           Scratch& scratch) const;
 
   const Model* model_;
   std::vector<Vec3f> material_colors_, cluster_colors_;
@@ -92,9 +94,8 @@ class Shader {
   std::vector<std::uint8_t> is_flat_;            ///< per triangle
   std::vector<std::uint8_t> is_unlit_material_;  ///< per material
   bool has_unlit_ = false, has_textures_ = false;
-  VertexNormals vertex_normals_;
+  SeenVertices vertices_;
   HeatMap heat_;
-  std::vector<Vec3f> background_;  ///< one colour per row
 };
 
 }  // namespace mdk

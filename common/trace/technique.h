@@ -33,8 +33,9 @@ class Technique {
   /// O(clusters).
   virtual void set_view(const PinholeRays&) {}
 
-  /// Closest hits of one tile. `hits` is clear on entry.
-  virtual void trace(const TileRays& tile, TileHits& hits, TileScratch& scratch,
+  /// Closest hits of one tile. Returns whether there are any; `hits` is written whole then, and
+  /// else left alone.
+  virtual bool trace(const TileRays& tile, TileHits& hits, TileScratch& scratch,
                      TraceCounters* counters) const = 0;
 
   /// Readies what occlude() needs, once per frame after update() and only for frames that are lit.

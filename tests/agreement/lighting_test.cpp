@@ -96,22 +96,20 @@ class LitView {
     Lighting lighting(*technique, rays, model_.bounds);
     lighting.choose_directions(occlusion_rays, 0);
 
-    const std::vector<Vec3f> normals(model_.vertex_count), white{{1, 1, 1}};
+    std::vector<SurfaceVertex> vertices(model_.vertex_count);
+    for (std::size_t v = 0; v < vertices.size(); ++v) vertices[v].position = mesh.positions()[v];
+    const std::vector<Vec3f> white{{1, 1, 1}};
     const std::vector<std::uint8_t> flat(model_.triangle_count(), 1);
     const std::vector<std::uint32_t> paint(model_.triangle_count(), 0);
-    const ShadedMesh shaded{model_.triangles.data(),
-                            mesh.positions().data(),
-                            normals.data(),
-                            flat.data(),
-                            white.data(),
-                            paint.data(),
-                            nullptr};
+    const ShadedMesh shaded{
+        model_.triangles.data(), vertices.data(), flat.data(), white.data(), paint.data(), nullptr};
     const auto scratch = std::make_unique<Lighting::Scratch>();
     for (std::size_t i = 0; i < hits.tile_count(); ++i) {
       SurfaceTile surface{};
       LightTile light;
-      compute_surface(rays, hits.tile_left(i), hits.tile_top(i), shaded, hits.tile(i), kTileSide,
-                      surface);
+      if (!hits.is_hit(i)) continue;
+      compute_surface(rays, hits.tile_left(i), hits.tile_top(i), shaded, hits.tile(i),
+                      {.normals = true, .barycentrics = true}, surface);
       rays_ += lighting.light_tile({shaded, hits.tile(i), surface, kTileSide, kTileSide}, *scratch,
                                    light);
       for (std::uint32_t p = 0; p < kTilePixels; ++p)

@@ -70,9 +70,8 @@ class Picture {
     const BvhView view{bvh.nodes, 0,
                        make_frustum_forms(make_frustum_basis(rays_), bvh.nodes[0].box())};
     for (std::size_t i = 0; i < hits_.tile_count(); ++i) {
-      hits_.tile(i).clear();
-      trace_tile_bvh({&rays_, &pixel_from_world_, hits_.tile_left(i), hits_.tile_top(i)}, view,
-                     soup, hits_.tile(i), scratch_, nullptr);
+      const TileRays tile{&rays_, &pixel_from_world_, hits_.tile_left(i), hits_.tile_top(i)};
+      hits_.set_hit(i, trace_tile_bvh(tile, view, soup, hits_.tile(i), scratch_, nullptr));
     }
     benchmark::DoNotOptimize(hits_.tile(0).t[0]);
   }

@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace mdk {
 namespace {
@@ -10,7 +12,18 @@ namespace {
 HitBuffer make_hits(std::uint32_t width, std::uint32_t height) {
   HitBuffer hits;
   hits.resize(width, height);
-  for (std::size_t i = 0; i < hits.tile_count(); ++i) hits.tile(i).clear();
+  return hits;
+}
+
+/// As of a frame whose every tile was looked into, and showed nothing.
+HitBuffer make_misses(std::uint32_t width, std::uint32_t height) {
+  HitBuffer hits = make_hits(width, height);
+  for (std::size_t i = 0; i < hits.tile_count(); ++i) {
+    TileHits& tile = hits.tile(i);
+    hits.set_hit(i, true);
+    std::fill_n(tile.triangle, kTilePixels, kNoHit);
+    std::fill_n(tile.t, kTilePixels, std::numeric_limits<float>::infinity());
+  }
   return hits;
 }
 
@@ -19,24 +32,25 @@ TEST(HitBuffer, CountsPixelsOfTheImageAndNotThoseOfTilesPastItsEdge) {
   ASSERT_EQ(hits.tile_count(), 6u);
   EXPECT_EQ(count_hits(hits), 0u);
   for (std::size_t i = 0; i < hits.tile_count(); ++i) {
-    hits.tile(i).written = true;
+    hits.set_hit(i, true);
     for (std::uint32_t& triangle : hits.tile(i).triangle) triangle = 3;
   }
   EXPECT_EQ(count_hits(hits), 35u * 19u);
 }
 
-TEST(HitBuffer, ClearingForgetsHitsWrittenBefore) {
+TEST(HitBuffer, TilesWithoutHitsHaveNoMeaning) {
   HitBuffer hits = make_hits(20, 20);
-  hits.tile(1).written = true;
+  hits.set_hit(1, true);
   hits.tile(1).triangle[0] = 5;
   hits.tile(1).t[0] = 2;
-  hits.tile(1).clear();
+  EXPECT_EQ(hits.triangle(16, 0), 5u);
+  hits.set_hit(1, false);
   EXPECT_EQ(hits.triangle(16, 0), kNoHit);
   EXPECT_EQ(hits.t(16, 0), std::numeric_limits<float>::infinity());
 }
 
 TEST(HitBuffer, MismatchIsAnotherTriangleOrAnotherBitOfDepth) {
-  HitBuffer a = make_hits(20, 20), b = make_hits(20, 20);
+  HitBuffer a = make_misses(20, 20), b = make_misses(20, 20);
   EXPECT_EQ(count_mismatches(a, b), 0u);
   a.tile(0).triangle[5] = b.tile(0).triangle[5] = 7;
   a.tile(0).t[5] = 1.0f;
@@ -51,7 +65,7 @@ TEST(HitBuffer, MismatchIsAnotherTriangleOrAnotherBitOfDepth) {
 }
 
 TEST(HitBuffer, APeerMayNameTheOtherTriangleAtTheSameDepthButNotMissIt) {
-  HitBuffer a = make_hits(16, 16), b = make_hits(16, 16);
+  HitBuffer a = make_misses(16, 16), b = make_misses(16, 16);
   const auto mismatches = [&] { return count_mismatches(a, b, Agreement::kSameDepth); };
   a.tile(0).triangle[5] = 7;
   a.tile(0).t[5] = 2.0f;

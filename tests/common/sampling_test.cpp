@@ -6,7 +6,6 @@
 
 #include "common/base/error.h"
 #include "common/trace/color.h"
-#include "common/trace/film.h"
 #include "common/trace/heat_map.h"
 #include "common/trace/renderer.h"
 #include "common/trace/residuals.h"
@@ -235,15 +234,6 @@ TEST(Residuals, AreTheMotionThatTheMapDoesNotExplainRelativeToTheRestDiagonal) {
   const std::uint32_t color = map.triangle_colors()[0];
   EXPECT_NEAR(color / 255.0, 3.5355 / 5, 0.01);
   EXPECT_EQ(map.palette()[color], heat_color(color / 255.0));
-}
-
-TEST(Film, AveragesSamplesInLinearLight) {
-  Film film;
-  film.begin(2, 1, 2);
-  film.put_row(0, 0, 2, Vec3f{1, 0, 0.5f});
-  film.put_row(0, 0, 2, Vec3f{0, 0, 0.5f});
-  film.develop();
-  EXPECT_EQ(film.pixels()[1], pack_srgb({0.5f, 0, 0.5f}));
 }
 
 }  // namespace

@@ -21,13 +21,14 @@ class SpinningTechnique final : public Technique {
   SpinningTechnique() : cost_ms_(kId == 0 ? kDearMs : kCheapMs) {}
   void update(const PosedMesh&) override { dear_updates += kId == 0; }
   void occlude(RayBeam&, TileScratch&) const override {}
-  void trace(const TileRays&, TileHits& hits, TileScratch&,
+  bool trace(const TileRays&, TileHits& hits, TileScratch&,
              TraceCounters* counters) const override {
     const Stopwatch watch;
     while (watch.milliseconds() < cost_ms_) {
     }
     hits.triangle[0] = kId;
     if (counters != nullptr) ++counters->node_visits;
+    return true;
   }
   std::size_t structure_bytes() const override { return 100; }
 
@@ -66,9 +67,8 @@ class TechniqueChooserTest : public testing::Test {
       chooser.set_view(rays);
       std::uint32_t shown = kNoHit;
       for (std::uint32_t tile = 0; tile < 256; ++tile) {
-        hits.clear();
         const TileRays tile_rays{&rays, nullptr, tile % 16 * 16, tile / 16 * 16};
-        chooser.trace(tile_rays, hits, scratch_, &counters_);
+        EXPECT_TRUE(chooser.trace(tile_rays, hits, scratch_, &counters_));
         if (tile > 0) {
           EXPECT_EQ(hits.triangle[0], shown) << "one frame, two techniques";
         }

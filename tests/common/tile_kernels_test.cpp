@@ -47,20 +47,22 @@ class Trial {
     cache.begin_frame(blocks.size());
     const KdTree kd = build_kd_tree(boxes_, 0, {.intersect_cost = 50.0f});
     const KdView kd_view{kd.view(), make_frustum_forms(basis, kd.bounds)};
+    for (HitBuffer& hits : hits_) hits.resize(kTileSide, kTileSide);
     int different = 0;
     for (std::uint32_t y = 0; y < kHeight; y += kTileSide)
       for (std::uint32_t x = 0; x < kWidth; x += kTileSide) {
         const TileRays tile{&rays, &pixel_from_world, x, y};
-        trace_tile_brute_force(tile, soup, cleared(hits_[0]), scratch_, nullptr);
-        trace_tile_bvh(tile, bvh_view, {blocks, positions_.data(), nullptr}, cleared(hits_[1]),
-                       scratch_, nullptr);
-        trace_tile_bvh(tile, bvh_view, {blocks, positions_.data(), &cache}, cleared(hits_[2]),
-                       scratch_, nullptr);
-        trace_tile_kd(tile, kd_view, soup, cleared(hits_[3]), scratch_, nullptr);
-        for (std::uint32_t i = 0; i < kTilePixels; ++i) {
-          hit_count_ += hits_[0].triangle[i] != kNoHit;
-          different += !same(i, hits_[1]) + !same(i, hits_[2]) + !same(i, hits_[3]);
-        }
+        const auto put = [&](std::size_t k, bool is_hit) { hits_[k].set_hit(0, is_hit); };
+        const auto hits = [&](std::size_t k) -> TileHits& { return hits_[k].tile(0); };
+        put(0, trace_tile_brute_force(tile, soup, hits(0), scratch_, nullptr));
+        put(1, trace_tile_bvh(tile, bvh_view, {blocks, positions_.data(), nullptr}, hits(1),
+                              scratch_, nullptr));
+        put(2, trace_tile_bvh(tile, bvh_view, {blocks, positions_.data(), &cache}, hits(2),
+                              scratch_, nullptr));
+        put(3, trace_tile_kd(tile, kd_view, soup, hits(3), scratch_, nullptr));
+        hit_count_ += static_cast<int>(count_hits(hits_[0]));
+        for (std::size_t k = 1; k < 4; ++k)
+          different += static_cast<int>(count_mismatches(hits_[0], hits_[k]));
       }
     return different;
   }
@@ -68,19 +70,10 @@ class Trial {
   int hit_count() const { return hit_count_; }
 
  private:
-  static TileHits& cleared(TileHits& hits) {
-    hits.clear();
-    return hits;
-  }
-  bool same(std::uint32_t i, const TileHits& other) const {
-    return hits_[0].triangle[i] == other.triangle[i] &&
-           (hits_[0].triangle[i] == kNoHit || hits_[0].t[i] == other.t[i]);
-  }
-
   std::vector<Triangle> triangles_;
   std::vector<Vec3f> positions_;
   std::vector<Aabb> boxes_;
-  std::array<TileHits, 4> hits_;
+  std::array<HitBuffer, 4> hits_;  ///< of one tile
   TileScratch scratch_;
   int hit_count_ = 0;
 };
@@ -208,11 +201,9 @@ TEST_P(TileKernels, CornersThatAreNotNumbersAreNeverHit) {
     const std::vector<Triangle> triangles = {{{0, 1, 2}}, {{1, 0, 2}}, {{3, 1, 2}}, {{0, 0, 3}}};
     const TriangleSoup soup{triangles.data(), positions.data(), 4};
     TileHits hits;
-    hits.clear();
     TileScratch scratch;
     const TileRays tile{&rays, &pixel_from_world, 16, 32};
-    trace_tile_brute_force(tile, soup, hits, scratch, nullptr);
-    for (const std::uint32_t triangle : hits.triangle) EXPECT_EQ(triangle, kNoHit);
+    EXPECT_FALSE(trace_tile_brute_force(tile, soup, hits, scratch, nullptr));
   }
 }
 

@@ -1,5 +1,5 @@
-// All rays of a picture leave one eye, so barycentric coordinates are linear over the image but for
-// a common factor: with corners a, b, c seen from the eye, the weight of c at the ray d is
+// All rays of a picture leave one eye, so the barycentric coordinates of a ray d are, but for a
+// common factor, with corners a, b, c seen from the eye: the weight of c is
 //
 //     ((b - a) x (b + a)) . d,    d = corner + X du + Y dv
 //
@@ -67,34 +67,68 @@ HWY_INLINE Vectors<D> negated_unless(D d, hn::Mask<D> keep, const Vectors<D>& v)
   const auto zero = hn::Zero(d);
   return choose<D>(keep, v, {hn::Sub(zero, v.x), hn::Sub(zero, v.y), hn::Sub(zero, v.z)});
 }
+/// (0, 0, 1) where there is no direction.
+template <class D>
+HWY_INLINE Vectors<D> unit(D d, const Vectors<D>& v) {
+  const auto length = hn::Sqrt(dot_product<D>(v, v));
+  return choose<D>(hn::Gt(length, hn::Zero(d)), scaled<D>(v, hn::Div(hn::Set(d, 1.0f), length)),
+                   broadcast(d, {0, 0, 1}));
+}
 
-/// Item `index` of a list of three floats each.
+/// One point per lane, put in whole and taken out as vectors of x, y and z: sooner done than
+/// gathering coordinate by coordinate.
 template <class D>
-HWY_INLINE Vectors<D> gather(D d, const Vec3f* list, IndexVec<D> index) {
-  const auto at = hn::Add(index, hn::Add(index, index));
-  const float* base = &list->x;
-  return {hn::GatherIndex(d, base, at), hn::GatherIndex(d, base + 1, at),
-          hn::GatherIndex(d, base + 2, at)};
-}
-template <class D>
-HWY_INLINE IndexVec<D> gather(D, const std::uint32_t* list, IndexVec<D> index) {
-  const hn::RebindToSigned<D> di;
-  return hn::GatherIndex(di, reinterpret_cast<const std::int32_t*>(list), index);
-}
+class Rows {
+ public:
+  /// A fourth float is read, too, and ignored.
+  HWY_INLINE void put(std::size_t lane, const Vec3f& point) {
+    const hn::CappedTag<float, 4> d4;
+    float* place = rows_ + lane % kStep * kLanes + lane / kStep * 4;
+    for (std::size_t k = 0; k < 4; k += hn::Lanes(d4))
+      hn::Store(hn::Load(d4, &point.x + k), d4, place + k);
+  }
+
+  HWY_INLINE Vectors<D> columns() const {
+    const D d;
+    if constexpr (kStep == 1) {
+      return {hn::Load(d, rows_), hn::Load(d, rows_ + 1), hn::Load(d, rows_ + 2)};
+    } else {
+      // Four lanes a block, turned over block by block. Found by their arguments: a machine without
+      // SIMD has no such functions.
+      const hn::Repartition<std::uint64_t, D> d64;
+      const auto pairs = [&](hn::Vec<D> v) { return hn::BitCast(d64, v); };
+      const auto a = hn::Load(d, rows_), b = hn::Load(d, rows_ + kLanes);
+      const auto c = hn::Load(d, rows_ + 2 * kLanes), e = hn::Load(d, rows_ + 3 * kLanes);
+      const auto xy_ab = pairs(InterleaveLower(d, a, b));
+      const auto xy_ce = pairs(InterleaveLower(d, c, e));
+      const auto z_ab = pairs(InterleaveUpper(d, a, b));
+      const auto z_ce = pairs(InterleaveUpper(d, c, e));
+      return {hn::BitCast(d, InterleaveLower(d64, xy_ab, xy_ce)),
+              hn::BitCast(d, InterleaveUpper(d64, xy_ab, xy_ce)),
+              hn::BitCast(d, InterleaveLower(d64, z_ab, z_ce))};
+    }
+  }
+
+ private:
+  static constexpr std::size_t kLanes = hn::MaxLanes(D());
+  static constexpr std::size_t kStep = kLanes < 4 ? 1 : 4;
+  static_assert(kLanes == 1 || kLanes % 4 == 0);
+  alignas(64) float rows_[4 * kLanes];
+};
 
 /// Triangles turned towards the eye, one a lane.
 template <class D>
 struct Facets {
-  Vectors<D> weight[3];  ///< of the corners, forms over the image; not negative inside
+  Vectors<D> edge[3];    ///< across from the corners: edge . ray is the corner's weight
   Vectors<D> normal[3];  ///< at the corners
-  Vectors<D> color[3];   ///< at the corners
-  Vectors<D> face;       ///< unit normal
+  Vectors<D> color[3];   ///< at the corners; without corner colours only the first
+  Vectors<D> face;       ///< their own normal, of any length
 };
 
 /// One triangle as it is kept, so that its other pixels find it: the members of Facets in order.
 struct KeptFacet {
   std::uint32_t triangle = kNoHit;
-  Vec3f weight[3], normal[3], color[3], face;
+  Vec3f edge[3], normal[3], color[3], face;
 };
 
 class FacetMaker {
@@ -102,70 +136,80 @@ class FacetMaker {
   FacetMaker(const PinholeRays& rays, const ShadedMesh& mesh) : rays_(rays), mesh_(mesh) {}
 
   template <class D>
-  HWY_INLINE Facets<D> make(D d, IndexVec<D> triangle) const {
-    const auto first = hn::Add(triangle, hn::Add(triangle, triangle));
-    const hn::RebindToSigned<D> di;
+  HWY_INLINE Facets<D> make(D d, const std::uint32_t* triangles) const {
     Facets<D> out;
     Vectors<D> p[3], n[3];
-    const std::uint32_t* corners = mesh_.triangles->v;
-    for (int k = 0; k < 3; ++k) {
-      const auto v = gather(d, corners, hn::Add(first, hn::Set(di, k)));
-      p[k] = difference<D>(gather(d, mesh_.positions, v), broadcast(d, rays_.origin));
-      n[k] = gather(d, mesh_.vertex_normals, v);
-    }
-    const auto face = cross_product<D>(difference<D>(p[1], p[0]), difference<D>(p[2], p[0]));
-    const auto is_front = hn::Lt(dot_product<D>(face, p[0]), hn::Zero(d));
-    out.face = unit(d, negated_unless(d, is_front, face));
-    const auto is_flat = flat(d, triangle);
+    fetch_corners(d, triangles, p, n);
+    for (Vectors<D>& corner : p) corner = difference<D>(corner, broadcast(d, rays_.origin));
+    out.face = cross_product<D>(difference<D>(p[1], p[0]), difference<D>(p[2], p[0]));
+    const auto is_front = hn::Lt(dot_product<D>(out.face, p[0]), hn::Zero(d));
+    out.face = negated_unless(d, is_front, out.face);
+    const auto is_flat = fetch_flat(d, triangles);
     for (int k = 0; k < 3; ++k) {
       const Vectors<D>&a = p[(k + 1) % 3], &b = p[(k + 2) % 3];
-      const auto edge =
+      out.edge[k] =
           negated_unless(d, is_front, cross_product<D>(difference<D>(b, a), sum<D>(b, a)));
-      out.weight[k] = {dot_product<D>(edge, broadcast(d, rays_.du)),
-                       dot_product<D>(edge, broadcast(d, rays_.dv)),
-                       dot_product<D>(edge, broadcast(d, rays_.corner))};
       const auto zero = hn::Zero(d);
       const auto none =
           hn::And(hn::Eq(n[k].x, zero), hn::And(hn::Eq(n[k].y, zero), hn::Eq(n[k].z, zero)));
-      out.normal[k] = choose<D>(hn::Or(is_flat, none), out.face, negated_unless(d, is_front, n[k]));
+      const auto own = hn::Or(is_flat, none);
+      out.normal[k] = negated_unless(d, is_front, n[k]);
+      if (!hn::AllFalse(d, own)) out.normal[k] = choose<D>(own, unit(d, out.face), out.normal[k]);
     }
-    paint(d, triangle, first, out);
+    fetch_colors(d, triangles, out);
     return out;
   }
 
  private:
   template <class D>
-  HWY_INLINE Vectors<D> unit(D d, const Vectors<D>& v) const {
-    const auto length = hn::Sqrt(dot_product<D>(v, v));
-    return choose<D>(hn::Gt(length, hn::Zero(d)), scaled<D>(v, hn::Div(hn::Set(d, 1.0f), length)),
-                     broadcast(d, {0, 0, 1}));
+  HWY_INLINE void fetch_corners(D d, const std::uint32_t* triangles, Vectors<D> (&p)[3],
+                                Vectors<D> (&n)[3]) const {
+    Rows<D> position[3], normal[3];
+    for (std::size_t i = 0; i < hn::Lanes(d); ++i)
+      for (std::size_t k = 0; k < 3; ++k) {
+        const SurfaceVertex& v = mesh_.vertices[mesh_.triangles[triangles[i]].v[k]];
+        position[k].put(i, v.position);
+        normal[k].put(i, v.normal);
+      }
+    for (std::size_t k = 0; k < 3; ++k) {
+      p[k] = position[k].columns();
+      n[k] = normal[k].columns();
+    }
   }
 
   template <class D>
-  HWY_INLINE hn::Mask<D> flat(D d, IndexVec<D> triangle) const {
-    const hn::RebindToSigned<D> di;
-    alignas(64) std::int32_t number[kTileSide];
+  HWY_INLINE hn::Mask<D> fetch_flat(D d, const std::uint32_t* triangles) const {
     alignas(64) float is_flat[kTileSide];
-    hn::Store(triangle, di, number);
-    for (std::size_t i = 0; i < hn::Lanes(d); ++i) is_flat[i] = mesh_.is_flat[number[i]];
+    for (std::size_t i = 0; i < hn::Lanes(d); ++i) is_flat[i] = mesh_.is_flat[triangles[i]];
     return hn::Ne(hn::Load(d, is_flat), hn::Zero(d));
   }
 
   template <class D>
-  HWY_INLINE void paint(D d, IndexVec<D> triangle, IndexVec<D> first, Facets<D>& out) const {
+  HWY_INLINE void fetch_colors(D d, const std::uint32_t* triangles, Facets<D>& out) const {
     const hn::RebindToSigned<D> di;
-    const auto base = gather(d, mesh_.palette, gather(d, mesh_.palette_index, triangle));
+    alignas(64) float red[kTileSide], green[kTileSide], blue[kTileSide];
+    alignas(64) std::int32_t rgba[3][kTileSide];
+    for (std::size_t i = 0; i < hn::Lanes(d); ++i) {
+      const Vec3f& base = mesh_.palette[mesh_.palette_index[triangles[i]]];
+      red[i] = base.x;
+      green[i] = base.y;
+      blue[i] = base.z;
+    }
+    const Vectors<D> base{hn::Load(d, red), hn::Load(d, green), hn::Load(d, blue)};
+    out.color[0] = base;
+    if (mesh_.corner_colors == nullptr) return;
+    for (std::size_t i = 0; i < hn::Lanes(d); ++i)
+      for (std::size_t k = 0; k < 3; ++k)
+        rgba[k][i] = static_cast<std::int32_t>(mesh_.corner_colors[3 * triangles[i] + k]);
     for (int k = 0; k < 3; ++k) {
-      out.color[k] = base;
-      if (mesh_.corner_colors == nullptr) continue;
-      const auto rgba = gather(d, mesh_.corner_colors, hn::Add(first, hn::Set(di, k)));
-      const auto channel = [&](IndexVec<D> bits) {
-        const auto byte = hn::And(bits, hn::Set(di, 255));
+      const auto bits = hn::Load(di, rgba[k]);
+      const auto channel = [&](IndexVec<D> shifted) {
+        const auto byte = hn::And(shifted, hn::Set(di, 255));
         return hn::Mul(hn::ConvertTo(d, byte), hn::Set(d, 1.0f / 255.0f));
       };
-      out.color[k] = {hn::Mul(base.x, channel(rgba)),
-                      hn::Mul(base.y, channel(hn::ShiftRight<8>(rgba))),
-                      hn::Mul(base.z, channel(hn::ShiftRight<16>(rgba)))};
+      out.color[k] = {hn::Mul(base.x, channel(bits)),
+                      hn::Mul(base.y, channel(hn::ShiftRight<8>(bits))),
+                      hn::Mul(base.z, channel(hn::ShiftRight<16>(bits)))};
     }
   }
 
@@ -175,12 +219,15 @@ class FacetMaker {
 
 class TileSurface {
  public:
-  TileSurface(const PinholeRays& rays, std::uint32_t x, std::uint32_t y, const ShadedMesh& mesh)
-      : rays_(rays), x_(x), y_(y), maker_(rays, mesh) {}
+  TileSurface(const PinholeRays& rays, std::uint32_t x, std::uint32_t y, const ShadedMesh& mesh,
+              const SurfaceWishes& wishes)
+      : rays_(rays), x_(x), y_(y), maker_(rays, mesh), wishes_(wishes) {
+    has_colors_ = mesh.corner_colors != nullptr;
+  }
 
-  void run(const TileHits& hits, std::uint32_t rows, SurfaceTile& out) {
+  void run(const TileHits& hits, SurfaceTile& out) {
     const FloatTag d;
-    for (std::uint32_t row = 0; row < rows; ++row)
+    for (std::uint32_t row = 0; row < kTileSide; ++row)
       for (std::uint32_t column = 0; column < kTileSide; column += hn::Lanes(d)) {
         const std::uint32_t* triangles = hits.triangle + row * kTileSide + column;
         if (runs(triangles) > kFewRuns) {
@@ -208,10 +255,11 @@ class TileSurface {
                              std::uint32_t column, SurfaceTile& out) const {
     const FloatTag d;
     const hn::RebindToUnsigned<FloatTag> du;
-    const hn::RebindToSigned<FloatTag> di;
     const auto ids = hn::Load(du, triangles);
     const auto hit = hn::Ne(ids, hn::Set(du, kNoHit));
-    const auto safe = hn::BitCast(di, hn::IfThenElseZero(hit, ids));  // triangle 0 where none is
+    alignas(64) std::uint32_t safe[kTileSide];  // where none is hit, one that is hit nearby
+    const auto any = hn::Set(du, triangles[hn::FindFirstTrue(du, hit)]);
+    hn::Store(hn::IfThenElse(hit, ids, any), du, safe);
     shade(maker_.make(d, safe), row, column, hn::RebindMask(d, hit), out);
   }
 
@@ -237,7 +285,7 @@ class TileSurface {
     const FloatTag d;
     Facets<FloatTag> out;
     for (int k = 0; k < 3; ++k) {
-      out.weight[k] = broadcast(d, kept.weight[k]);
+      out.edge[k] = broadcast(d, kept.edge[k]);
       out.normal[k] = broadcast(d, kept.normal[k]);
       out.color[k] = broadcast(d, kept.color[k]);
     }
@@ -247,80 +295,108 @@ class TileSurface {
 
   void keep(std::uint32_t triangle, KeptFacet& kept) const {
     using One = hn::CappedTag<float, 1>;
-    const One one;
-    const hn::RebindToSigned<One> one_index;
-    const auto facet = maker_.make(one, hn::Set(one_index, static_cast<std::int32_t>(triangle)));
+    const auto facet = maker_.make(One(), &triangle);
     const auto lane = [](const Vectors<One>& v) {
       return Vec3f{hn::GetLane(v.x), hn::GetLane(v.y), hn::GetLane(v.z)};
     };
     for (int k = 0; k < 3; ++k) {
-      kept.weight[k] = lane(facet.weight[k]);
+      kept.edge[k] = lane(facet.edge[k]);
       kept.normal[k] = lane(facet.normal[k]);
-      kept.color[k] = lane(facet.color[k]);
+      if (k == 0 || has_colors_) kept.color[k] = lane(facet.color[k]);
     }
     kept.face = lane(facet.face);
     kept.triangle = triangle;
   }
 
+  /// Where a vector of pixels goes in a tile's arrays.
+  class Place {
+   public:
+    Place(std::uint32_t row, std::uint32_t column, hn::Mask<FloatTag> mine)
+        : at_(row * kTileSide + column), mine_(mine) {}
+    HWY_INLINE void put(FloatVec value, float* array) const {
+      const FloatTag d;
+      hn::Store(hn::IfThenElse(mine_, value, hn::Load(d, array + at_)), d, array + at_);
+    }
+    HWY_INLINE void put(const Vectors<FloatTag>& value, float* x, float* y, float* z) const {
+      put(value.x, x);
+      put(value.y, y);
+      put(value.z, z);
+    }
+
+   private:
+    std::size_t at_;
+    hn::Mask<FloatTag> mine_;
+  };
+
   HWY_INLINE void shade(const Facets<FloatTag>& facet, std::uint32_t row, std::uint32_t column,
                         hn::Mask<FloatTag> mine, SurfaceTile& out) const {
     using V = FloatTag;
     const FloatTag d;
-    const auto zero = hn::Zero(d), one = hn::Set(d, 1.0f);
+    const Place place(row, column, mine);
     const auto x = hn::Add(hn::Iota(d, static_cast<float>(x_ + column)), hn::Set(d, 0.5f));
-    const float y = static_cast<float>(y_ + row) + 0.5f;
-    const auto weight = [&](const Vectors<V>& f) {
-      const auto value = hn::Add(hn::Mul(f.x, x), hn::Add(hn::Mul(f.y, hn::Set(d, y)), f.z));
-      return hn::Max(value, zero);
-    };
-    const auto w0 = weight(facet.weight[0]), w1 = weight(facet.weight[1]),
-               w2 = weight(facet.weight[2]);
-    const auto total = hn::Add(hn::Add(w0, w1), w2);
-    const auto share = hn::IfThenElse(hn::Gt(total, zero), hn::Div(one, total), zero);
-
-    // The blend of the corners' normals, on the side of the triangle that is seen.
-    Vectors<V> n = sum<V>(sum<V>(scaled<V>(facet.normal[0], w0), scaled<V>(facet.normal[1], w1)),
-                          scaled<V>(facet.normal[2], w2));
-    const auto square = dot_product<V>(n, n);
-    const auto usable = hn::Gt(square, zero);
-    const auto size = hn::Div(one, hn::Sqrt(hn::IfThenElse(usable, square, one)));
-    const auto turned = hn::CopySign(size, dot_product<V>(n, facet.face));
-    n = choose<V>(usable, scaled<V>(n, turned), facet.face);
-
-    const Vec3f base = rays_.corner + rays_.dv * y;
+    const Vec3f base = rays_.corner + rays_.dv * (static_cast<float>(y_ + row) + 0.5f);
     const Vectors<V> ray = sum<V>(scaled<V>(broadcast(d, rays_.du), x), broadcast(d, base));
-    const auto along = hn::Div(dot_product<V>(n, ray), hn::Sqrt(dot_product<V>(ray, ray)));
-    const auto facing = hn::Min(hn::Max(hn::Neg(along), zero), one);
+    FloatVec w[3];
+    for (int k = 0; k < 3; ++k) w[k] = hn::Max(dot_product<V>(facet.edge[k], ray), hn::Zero(d));
 
-    const std::size_t at = row * kTileSide + column;
-    const auto put = [&](FloatVec value, float* array) {
-      hn::Store(hn::IfThenElse(mine, value, hn::Load(d, array + at)), d, array + at);
-    };
-    put(n.x, out.normal_x);
-    put(n.y, out.normal_y);
-    put(n.z, out.normal_z);
-    put(facing, out.facing);
-    const auto bary1 = hn::Mul(w1, share), bary2 = hn::Mul(w2, share);
-    put(bary1, out.bary1);
-    put(bary2, out.bary2);
-    const auto bary0 = hn::Mul(w0, share);
-    const Vectors<V> color =
-        sum<V>(sum<V>(scaled<V>(facet.color[0], bary0), scaled<V>(facet.color[1], bary1)),
-               scaled<V>(facet.color[2], bary2));
-    put(color.x, out.red);
-    put(color.y, out.green);
-    put(color.z, out.blue);
+    face_the_eye(facet, ray, w, place, out);
+    if (has_colors_ || wishes_.barycentrics) {
+      const auto total = hn::Add(hn::Add(w[0], w[1]), w[2]);
+      const auto share =
+          hn::IfThenElse(hn::Gt(total, hn::Zero(d)), hn::Div(hn::Set(d, 1.0f), total), hn::Zero(d));
+      for (FloatVec& weight : w) weight = hn::Mul(weight, share);
+    }
+    if (wishes_.barycentrics) {
+      place.put(w[1], out.bary1);
+      place.put(w[2], out.bary2);
+    }
+    place.put(has_colors_ ? blend(facet.color, w) : facet.color[0], out.red, out.green, out.blue);
+  }
+
+  static HWY_INLINE Vectors<FloatTag> blend(const Vectors<FloatTag> (&corner)[3],
+                                            const FloatVec (&w)[3]) {
+    using V = FloatTag;
+    return sum<V>(sum<V>(scaled<V>(corner[0], w[0]), scaled<V>(corner[1], w[1])),
+                  scaled<V>(corner[2], w[2]));
+  }
+
+  /// The blend of the corners' normals, on the side of the triangle that is seen.
+  HWY_INLINE void face_the_eye(const Facets<FloatTag>& facet, const Vectors<FloatTag>& ray,
+                               const FloatVec (&w)[3], const Place& place, SurfaceTile& out) const {
+    using V = FloatTag;
+    const FloatTag d;
+    const auto zero = hn::Zero(d), one = hn::Set(d, 1.0f);
+    Vectors<V> n = blend(facet.normal, w);
+    auto square = dot_product<V>(n, n);
+    const auto usable = hn::Gt(square, zero);
+    if (!hn::AllTrue(d, usable)) {
+      n = choose<V>(usable, n, unit(d, facet.face));
+      square = hn::IfThenElse(usable, square, one);
+    }
+    const auto side = dot_product<V>(n, facet.face);
+    if (wishes_.facing) {
+      const auto along = hn::Mul(dot_product<V>(n, ray), hn::CopySign(one, side));
+      const auto cosine =
+          hn::Div(hn::Neg(along), hn::Sqrt(hn::Mul(square, dot_product<V>(ray, ray))));
+      place.put(hn::Min(hn::Max(cosine, zero), one), out.facing);
+    }
+    if (wishes_.normals) {
+      const auto size = hn::Div(one, hn::Sqrt(square));
+      place.put(scaled<V>(n, hn::CopySign(size, side)), out.normal_x, out.normal_y, out.normal_z);
+    }
   }
 
   const PinholeRays& rays_;
   std::uint32_t x_, y_;
   FacetMaker maker_;
+  SurfaceWishes wishes_;
+  bool has_colors_;
   KeptFacet kept_[kKept];
 };
 
 void Surface(const PinholeRays& rays, std::uint32_t x, std::uint32_t y, const ShadedMesh& mesh,
-             const TileHits& hits, std::uint32_t rows, SurfaceTile& surface) {
-  TileSurface(rays, x, y, mesh).run(hits, rows, surface);
+             const TileHits& hits, const SurfaceWishes& wishes, SurfaceTile& surface) {
+  TileSurface(rays, x, y, mesh, wishes).run(hits, surface);
 }
 
 }  // namespace HWY_NAMESPACE
@@ -333,9 +409,9 @@ namespace mdk {
 HWY_EXPORT(Surface);
 
 void compute_surface(const PinholeRays& rays, std::uint32_t x, std::uint32_t y,
-                     const ShadedMesh& mesh, const TileHits& hits, std::uint32_t rows,
+                     const ShadedMesh& mesh, const TileHits& hits, const SurfaceWishes& wishes,
                      SurfaceTile& surface) {
-  HWY_DYNAMIC_DISPATCH(Surface)(rays, x, y, mesh, hits, rows, surface);
+  HWY_DYNAMIC_DISPATCH(Surface)(rays, x, y, mesh, hits, wishes, surface);
 }
 
 }  // namespace mdk

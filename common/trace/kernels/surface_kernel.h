@@ -10,20 +10,33 @@
 
 namespace mdk {
 
+/// A corner of triangles that are seen; what shading wants of it lies together.
+struct alignas(32) SurfaceVertex {
+  Vec3f position;  ///< in the present pose
+  float unused0 = 0;
+  Vec3f normal;  ///< unit, or zero where there is none
+  float unused1 = 0;
+};
+static_assert(sizeof(SurfaceVertex) == 8 * sizeof(float));
+
 /// The mesh as shading sees it. A triangle's colour is that of the palette, times the colours of
 /// its corners where there are any.
 struct ShadedMesh {
   const Triangle* triangles;
-  const Vec3f* positions;  ///< present pose
-  const Vec3f*
-      vertex_normals;  ///< unit, or zero where there is none; those of hit triangles suffice
+  const SurfaceVertex* vertices;       ///< those of hit triangles suffice
   const std::uint8_t* is_flat;         ///< per triangle: shown with its own normal
   const Vec3f* palette;                ///< linear RGB
   const std::uint32_t* palette_index;  ///< per triangle
   const std::uint32_t* corner_colors;  ///< 3 per triangle, linear RGBA bytes, red lowest; or null
 };
 
-/// One value per pixel of a tile, at j * kTileSide + i; without meaning where nothing was hit.
+/// What is wanted of a surface besides its colour.
+struct SurfaceWishes {
+  bool facing = true, normals = false, barycentrics = false;
+};
+
+/// One value per pixel of a tile, at j * kTileSide + i; without meaning where nothing was hit or it
+/// was not wished for.
 struct alignas(64) SurfaceTile {
   float normal_x[kTilePixels], normal_y[kTilePixels], normal_z[kTilePixels];  ///< unit, to the eye
   float facing[kTilePixels];  ///< cosine between normal and the way to the eye, in [0, 1]
@@ -31,10 +44,10 @@ struct alignas(64) SurfaceTile {
   float red[kTilePixels], green[kTilePixels], blue[kTilePixels];  ///< linear
 };
 
-/// The upper left pixel of `hits` is (x, y) of the image. Works through the first `rows` rows. The
-/// same to the bit on every machine.
+/// The upper left pixel of `hits`, which holds a hit, is (x, y) of the image. The same to the bit
+/// on every machine.
 void compute_surface(const PinholeRays& rays, std::uint32_t x, std::uint32_t y,
-                     const ShadedMesh& mesh, const TileHits& hits, std::uint32_t rows,
+                     const ShadedMesh& mesh, const TileHits& hits, const SurfaceWishes& wishes,
                      SurfaceTile& surface);
 
 }  // namespace mdk

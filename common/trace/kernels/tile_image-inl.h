@@ -83,7 +83,6 @@ class TileImage {
   /// Rows of 16 pixels, depths instead of nearness.
   void store(TileHits& hits) const {
     const FloatTag d;
-    hits.written = true;
     alignas(64) float t[kTilePixels];
     for (std::size_t i = 0; i < kTilePixels; i += hn::Lanes(d))
       hn::Store(hn::Div(hn::Set(d, 1.0f), hn::Load(d, nearness_ + i)), d, t + i);

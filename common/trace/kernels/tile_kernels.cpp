@@ -181,47 +181,46 @@ void two_level_bvh(const TileRays& tile, const TopLevelView& top, const BlockSou
   });
 }
 
-/// Traces with counting or without, then stores what was hit.
+/// Traces with counting or without, then stores what was hit, if anything.
 template <class Walk>
-void with_tester(const TileRays& tile, const Vec3f* positions, TileHits& hits,
+bool with_tester(const TileRays& tile, const Vec3f* positions, TileHits& hits,
                  TraceCounters* counters, const Walk& walk) {
   const auto run = [&](auto counter) {
     BlockTester<decltype(counter)> tester(tile, positions, counter);
     walk(tester);
-    if (!tester.image().empty()) tester.image().store(hits);
+    if (tester.image().empty()) return false;
+    tester.image().store(hits);
+    return true;
   };
-  if (counters != nullptr) {
-    run(Counting{*counters});
-  } else {
-    run(NoCounting{});
-  }
+  return counters != nullptr ? run(Counting{*counters}) : run(NoCounting{});
 }
 
-void BruteForce(const TileRays& tile, const TriangleSoup& soup, TileHits& hits,
+bool BruteForce(const TileRays& tile, const TriangleSoup& soup, TileHits& hits,
                 TileScratch& scratch, TraceCounters* counters) {
-  with_tester(tile, soup.positions, hits, counters,
-              [&](auto& tester) { brute_force(soup, tester, scratch); });
+  return with_tester(tile, soup.positions, hits, counters,
+                     [&](auto& tester) { brute_force(soup, tester, scratch); });
 }
-void Kd(const TileRays& tile, const KdView& tree, const TriangleSoup& soup, TileHits& hits,
+bool Kd(const TileRays& tile, const KdView& tree, const TriangleSoup& soup, TileHits& hits,
         TileScratch& scratch, TraceCounters* counters) {
-  with_tester(tile, soup.positions, hits, counters,
-              [&](auto& tester) { kd(tile, tree, soup, tester, scratch); });
+  return with_tester(tile, soup.positions, hits, counters,
+                     [&](auto& tester) { kd(tile, tree, soup, tester, scratch); });
 }
-void TwoLevelKd(const TileRays& tile, const KdView& top, std::span<const KdView> clusters,
+bool TwoLevelKd(const TileRays& tile, const KdView& top, std::span<const KdView> clusters,
                 const TriangleSoup& soup, TileHits& hits, TileScratch& scratch,
                 TraceCounters* counters) {
-  with_tester(tile, soup.positions, hits, counters,
-              [&](auto& tester) { two_level_kd(tile, top, clusters, soup, tester, scratch); });
+  return with_tester(tile, soup.positions, hits, counters, [&](auto& tester) {
+    two_level_kd(tile, top, clusters, soup, tester, scratch);
+  });
 }
-void OneLevelBvh(const TileRays& tile, const BvhView& tree, const BlockSoup& soup, TileHits& hits,
+bool OneLevelBvh(const TileRays& tile, const BvhView& tree, const BlockSoup& soup, TileHits& hits,
                  TileScratch& scratch, TraceCounters* counters) {
-  with_tester(tile, soup.positions, hits, counters,
-              [&](auto& tester) { bvh(tile, tree, soup, tester, scratch); });
+  return with_tester(tile, soup.positions, hits, counters,
+                     [&](auto& tester) { bvh(tile, tree, soup, tester, scratch); });
 }
-void TwoLevelBvh(const TileRays& tile, const TopLevelView& top, const BlockSoup& soup,
+bool TwoLevelBvh(const TileRays& tile, const TopLevelView& top, const BlockSoup& soup,
                  TileHits& hits, TileScratch& scratch, TraceCounters* counters) {
-  with_tester(tile, soup.positions, hits, counters,
-              [&](auto& tester) { two_level_bvh(tile, top, soup, tester, scratch); });
+  return with_tester(tile, soup.positions, hits, counters,
+                     [&](auto& tester) { two_level_bvh(tile, top, soup, tester, scratch); });
 }
 
 }  // namespace HWY_NAMESPACE
@@ -237,26 +236,26 @@ HWY_EXPORT(TwoLevelKd);
 HWY_EXPORT(OneLevelBvh);
 HWY_EXPORT(TwoLevelBvh);
 
-void trace_tile_brute_force(const TileRays& tile, const TriangleSoup& soup, TileHits& hits,
+bool trace_tile_brute_force(const TileRays& tile, const TriangleSoup& soup, TileHits& hits,
                             TileScratch& scratch, TraceCounters* counters) {
-  HWY_DYNAMIC_DISPATCH(BruteForce)(tile, soup, hits, scratch, counters);
+  return HWY_DYNAMIC_DISPATCH(BruteForce)(tile, soup, hits, scratch, counters);
 }
-void trace_tile_kd(const TileRays& tile, const KdView& tree, const TriangleSoup& soup,
+bool trace_tile_kd(const TileRays& tile, const KdView& tree, const TriangleSoup& soup,
                    TileHits& hits, TileScratch& scratch, TraceCounters* counters) {
-  HWY_DYNAMIC_DISPATCH(Kd)(tile, tree, soup, hits, scratch, counters);
+  return HWY_DYNAMIC_DISPATCH(Kd)(tile, tree, soup, hits, scratch, counters);
 }
-void trace_tile_two_level_kd(const TileRays& tile, const KdView& top,
+bool trace_tile_two_level_kd(const TileRays& tile, const KdView& top,
                              std::span<const KdView> clusters, const TriangleSoup& soup,
                              TileHits& hits, TileScratch& scratch, TraceCounters* counters) {
-  HWY_DYNAMIC_DISPATCH(TwoLevelKd)(tile, top, clusters, soup, hits, scratch, counters);
+  return HWY_DYNAMIC_DISPATCH(TwoLevelKd)(tile, top, clusters, soup, hits, scratch, counters);
 }
-void trace_tile_bvh(const TileRays& tile, const BvhView& tree, const BlockSoup& soup,
+bool trace_tile_bvh(const TileRays& tile, const BvhView& tree, const BlockSoup& soup,
                     TileHits& hits, TileScratch& scratch, TraceCounters* counters) {
-  HWY_DYNAMIC_DISPATCH(OneLevelBvh)(tile, tree, soup, hits, scratch, counters);
+  return HWY_DYNAMIC_DISPATCH(OneLevelBvh)(tile, tree, soup, hits, scratch, counters);
 }
-void trace_tile_two_level_bvh(const TileRays& tile, const TopLevelView& top, const BlockSoup& soup,
+bool trace_tile_two_level_bvh(const TileRays& tile, const TopLevelView& top, const BlockSoup& soup,
                               TileHits& hits, TileScratch& scratch, TraceCounters* counters) {
-  HWY_DYNAMIC_DISPATCH(TwoLevelBvh)(tile, top, soup, hits, scratch, counters);
+  return HWY_DYNAMIC_DISPATCH(TwoLevelBvh)(tile, top, soup, hits, scratch, counters);
 }
 
 PixelFromWorld make_pixel_from_world(const PinholeRays& rays) {

@@ -79,16 +79,17 @@ struct TopLevelView {
   std::span<const BvhView> clusters;
 };
 
-void trace_tile_brute_force(const TileRays& tile, const TriangleSoup& soup, TileHits& hits,
+/// Each returns whether a ray hits; `hits` is written whole then, and else left alone.
+bool trace_tile_brute_force(const TileRays& tile, const TriangleSoup& soup, TileHits& hits,
                             TileScratch& scratch, TraceCounters* counters);
-void trace_tile_kd(const TileRays& tile, const KdView& tree, const TriangleSoup& soup,
+bool trace_tile_kd(const TileRays& tile, const KdView& tree, const TriangleSoup& soup,
                    TileHits& hits, TileScratch& scratch, TraceCounters* counters);
-void trace_tile_two_level_kd(const TileRays& tile, const KdView& top,
+bool trace_tile_two_level_kd(const TileRays& tile, const KdView& top,
                              std::span<const KdView> clusters, const TriangleSoup& soup,
                              TileHits& hits, TileScratch& scratch, TraceCounters* counters);
-void trace_tile_bvh(const TileRays& tile, const BvhView& tree, const BlockSoup& soup,
+bool trace_tile_bvh(const TileRays& tile, const BvhView& tree, const BlockSoup& soup,
                     TileHits& hits, TileScratch& scratch, TraceCounters* counters);
-void trace_tile_two_level_bvh(const TileRays& tile, const TopLevelView& top, const BlockSoup& soup,
+bool trace_tile_two_level_bvh(const TileRays& tile, const TopLevelView& top, const BlockSoup& soup,
                               TileHits& hits, TileScratch& scratch, TraceCounters* counters);
 
 }  // namespace mdk

@@ -8,9 +8,9 @@ namespace {
 class BruteForceTechnique final : public Technique {
  public:
   void update(const PosedMesh& mesh) override { soup_ = soup_of(mesh); }
-  void trace(const TileRays& tile, TileHits& hits, TileScratch& scratch,
+  bool trace(const TileRays& tile, TileHits& hits, TileScratch& scratch,
              TraceCounters* counters) const override {
-    trace_tile_brute_force(tile, soup_, hits, scratch, counters);
+    return trace_tile_brute_force(tile, soup_, hits, scratch, counters);
   }
   void occlude(RayBeam& beam, TileScratch&) const override {
     occlude_beam_brute_force(soup_, beam);

@@ -28,10 +28,10 @@ void BvhTechnique::set_view(const PinholeRays& rays) {
   cache_.begin_frame(blocks_.size());
 }
 
-void BvhTechnique::trace(const TileRays& tile, TileHits& hits, TileScratch& scratch,
+bool BvhTechnique::trace(const TileRays& tile, TileHits& hits, TileScratch& scratch,
                          TraceCounters* counters) const {
-  trace_tile_bvh(tile, view_, {blocks_, positions_, cache_.usable() ? &cache_ : nullptr}, hits,
-                 scratch, counters);
+  return trace_tile_bvh(tile, view_, {blocks_, positions_, cache_.usable() ? &cache_ : nullptr},
+                        hits, scratch, counters);
 }
 
 void BvhTechnique::prepare_occlusion() {

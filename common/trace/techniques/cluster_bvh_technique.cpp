@@ -25,11 +25,11 @@ void ClusterBvhTechnique::set_view(const PinholeRays& rays) {
   cache_.begin_frame(present_->blocks.size());
 }
 
-void ClusterBvhTechnique::trace(const TileRays& tile, TileHits& hits, TileScratch& scratch,
+bool ClusterBvhTechnique::trace(const TileRays& tile, TileHits& hits, TileScratch& scratch,
                                 TraceCounters* counters) const {
-  trace_tile_two_level_bvh(tile, {top_view_, top_.box_of_leaf, views_},
-                           {present_->blocks, positions_, cache_.usable() ? &cache_ : nullptr},
-                           hits, scratch, counters);
+  return trace_tile_two_level_bvh(
+      tile, {top_view_, top_.box_of_leaf, views_},
+      {present_->blocks, positions_, cache_.usable() ? &cache_ : nullptr}, hits, scratch, counters);
 }
 
 void ClusterBvhTechnique::prepare_occlusion() {

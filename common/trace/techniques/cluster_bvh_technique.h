@@ -22,7 +22,7 @@ class ClusterBvhTechnique : public Technique {
 
   void update(const PosedMesh& mesh) final;
   void set_view(const PinholeRays& rays) final;
-  void trace(const TileRays& tile, TileHits& hits, TileScratch& scratch,
+  bool trace(const TileRays& tile, TileHits& hits, TileScratch& scratch,
              TraceCounters* counters) const final;
   void prepare_occlusion() final;
   void occlude(RayBeam& beam, TileScratch& scratch) const final;

@@ -66,7 +66,7 @@ class TilePackets {
     }
   }
 
-  void trace(RTCScene scene, const TileRays& tile, TileHits& hits) {
+  bool trace(RTCScene scene, const TileRays& tile, TileHits& hits) {
     if (!(tile.rays->origin == origin_)) set_origin(tile.rays->origin);
     for (std::uint32_t p = 0; p < kPackets; ++p) aim(packets_[p], tile, p);
     RTCIntersectContext context;
@@ -74,7 +74,12 @@ class TilePackets {
     context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
     rtcIntersectNM(scene, &context, reinterpret_cast<RTCRayHitN*>(packets_), kWidth, kPackets,
                    sizeof(RTCRayHit16));
+    std::uint32_t found = 0;  // the only geometry is number 0
+    for (const RTCRayHit16& packet : packets_)
+      for (const unsigned geometry : packet.hit.geomID) found += geometry == 0;
+    if (found == 0) return false;
     for (std::uint32_t p = 0; p < kPackets; ++p) read_back(packets_[p], p, hits);
+    return true;
   }
 
  private:
@@ -104,17 +109,13 @@ class TilePackets {
   }
 
   static void read_back(const RTCRayHit16& packet, std::uint32_t p, TileHits& hits) {
-    bool some = false;
-    for (std::uint32_t i = 0; i < kWidth; ++i) some |= packet.hit.geomID[i] == 0;
-    if (!some) return;
-    hits.written = true;
     const std::uint32_t first = p / kSquaresPerRow * kSide * kTileSide + p % kSquaresPerRow * kSide;
-    for (std::uint32_t i = 0; i < kWidth; ++i) {
-      if (packet.hit.geomID[i] != 0) continue;  // the only geometry is number 0
-      const std::uint32_t pixel = first + i / kSide * kTileSide + i % kSide;
-      hits.t[pixel] = packet.ray.tfar[i];
-      hits.triangle[pixel] = packet.hit.primID[i];
-    }
+    for (std::uint32_t row = 0; row < kSide; ++row)
+      for (std::uint32_t column = 0; column < kSide; ++column) {
+        const std::uint32_t i = row * kSide + column, pixel = first + row * kTileSide + column;
+        hits.t[pixel] = packet.ray.tfar[i];
+        hits.triangle[pixel] = packet.hit.geomID[i] == 0 ? packet.hit.primID[i] : kNoHit;
+      }
   }
 
   alignas(64) RTCRayHit16 packets_[kPackets];
@@ -241,8 +242,8 @@ class EmbreeTechnique final : public Technique {
     rtcGetSceneBounds(scene_, &box);
     bounds_ = image_bounds(box, rays);
   }
-  void trace(const TileRays& tile, TileHits& hits, TileScratch&, TraceCounters*) const override {
-    if (bounds_.meets(tile)) packets_.local().trace(scene_, tile, hits);
+  bool trace(const TileRays& tile, TileHits& hits, TileScratch&, TraceCounters*) const override {
+    return bounds_.meets(tile) && packets_.local().trace(scene_, tile, hits);
   }
   void occlude(RayBeam& beam, TileScratch&) const override {
     beam_packets_.local().occlude(scene_, beam);

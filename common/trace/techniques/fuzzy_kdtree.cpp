@@ -37,9 +37,9 @@ class FuzzyKdTechnique final : public Technique {
     top_view_ = {top_.view(), make_frustum_forms(make_frustum_basis(rays), top_.bounds)};
   }
 
-  void trace(const TileRays& tile, TileHits& hits, TileScratch& scratch,
+  bool trace(const TileRays& tile, TileHits& hits, TileScratch& scratch,
              TraceCounters* counters) const override {
-    trace_tile_two_level_kd(tile, top_view_, clusters_, soup_, hits, scratch, counters);
+    return trace_tile_two_level_kd(tile, top_view_, clusters_, soup_, hits, scratch, counters);
   }
 
   void prepare_occlusion() override {

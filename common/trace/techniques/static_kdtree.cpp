@@ -32,9 +32,9 @@ class StaticKdTechnique final : public Technique {
   void set_view(const PinholeRays& rays) override {
     present_.forms = make_frustum_forms(make_frustum_basis(rays), present_.tree.bounds);
   }
-  void trace(const TileRays& tile, TileHits& hits, TileScratch& scratch,
+  bool trace(const TileRays& tile, TileHits& hits, TileScratch& scratch,
              TraceCounters* counters) const override {
-    trace_tile_kd(tile, present_, soup_, hits, scratch, counters);
+    return trace_tile_kd(tile, present_, soup_, hits, scratch, counters);
   }
   void prepare_occlusion() override {
     beam_space_ = make_beam_space(Affine3d{}, present_.tree.bounds, mesh_bounds_);

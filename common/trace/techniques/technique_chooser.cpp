@@ -65,14 +65,15 @@ void TechniqueChooser::set_view(const PinholeRays& rays) {
   tiles_ = timed_ = 0;
 }
 
-void TechniqueChooser::trace(const TileRays& tile, TileHits& hits, TileScratch& scratch,
+bool TechniqueChooser::trace(const TileRays& tile, TileHits& hits, TileScratch& scratch,
                              TraceCounters* counters) const {
   const Technique& serving = *techniques_[serving_];
   tiles_.fetch_add(1, std::memory_order_relaxed);
   const std::size_t number = is_timed(tile) ? timed_++ : kMostTimedTiles;
   const Stopwatch watch;
-  serving.trace(tile, hits, scratch, counters);
+  const bool is_hit = serving.trace(tile, hits, scratch, counters);
   if (number < kMostTimedTiles) tile_ms_[number] = static_cast<float>(watch.milliseconds());
+  return is_hit;
 }
 
 void TechniqueChooser::prepare_occlusion() { candidate(serving_).prepare_occlusion(); }

@@ -34,7 +34,7 @@ class TechniqueChooser final : public Technique {
   void prebuild(const PosedMesh& mesh) override;
   void update(const PosedMesh& mesh) override;
   void set_view(const PinholeRays& rays) override;
-  void trace(const TileRays& tile, TileHits& hits, TileScratch& scratch,
+  bool trace(const TileRays& tile, TileHits& hits, TileScratch& scratch,
              TraceCounters* counters) const override;
   void prepare_occlusion() override;
   void occlude(RayBeam& beam, TileScratch& scratch) const override;
