@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "common/base/error.h"
+#include "common/base/printable_text.h"
 #include "formats/gltf_accessor.h"
 #include "formats/gltf_checks.h"
 #include "formats/gltf_draco.h"
@@ -407,7 +408,8 @@ class Converter {
 }  // namespace
 
 void Notes::add(const std::string& sentence) {
-  if (std::ranges::find(sentences_, sentence) == sentences_.end()) sentences_.push_back(sentence);
+  const std::string line = printable_line(sentence);
+  if (std::ranges::find(sentences_, line) == sentences_.end()) sentences_.push_back(line);
 }
 
 Document load_document(const std::string& path, Notes& notes) {

@@ -14,6 +14,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kMaxJsonBytes = std::size_t{1} << 30;
+constexpr std::size_t kMaxNameBytes = 1000;
 constexpr std::uintmax_t kMaxFileBytes = 0xffffffffu;  // tinygltf counts bytes in 32 bits
 
 int hex_digit(char c) {
@@ -73,6 +74,10 @@ Bytes read_whole_file(const std::string& path) {
 
 std::string resolve_uri(const std::string& gltf_path, const std::string& uri) {
   const std::string name = percent_decoded(uri);
+  if (name.size() > kMaxNameBytes)
+    throw bad_input(gltf_path, "refers to \"" + uri.substr(0, 40) + "…\", which at " +
+                                   std::to_string(name.size()) +
+                                   " bytes is no name that a file can have");
   const fs::path relative = fs::path(name).lexically_normal();
   const bool leaves = relative.is_absolute() || relative.empty() || *relative.begin() == ".." ||
                       *relative.begin() == ".";

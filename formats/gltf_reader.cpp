@@ -25,9 +25,10 @@ using namespace gltf;
 constexpr std::size_t kMaxVertices = std::size_t{1} << 27;
 constexpr std::size_t kMaxCorners = std::size_t{1} << 29;
 constexpr std::size_t kMaxLinks = 0xffffffffu;
-constexpr std::size_t kMaxPoseBytes = std::size_t{16} << 30;
 constexpr std::size_t kKeysPerChunk = 2;
 constexpr std::size_t kKeysPerReport = 32;
+
+std::string mebibytes(std::size_t bytes) { return std::to_string(bytes >> 20) + " MiB"; }
 
 Error too_large(const std::string& path, const std::string& what) {
   return {ErrorCode::kOverLimit, path + ": shows " + what + " in all, more than can be held"};
@@ -35,7 +36,8 @@ Error too_large(const std::string& path, const std::string& what) {
 
 /// What the visible nodes unfold to, before anything is decoded: nodes may share meshes, and meshes
 /// accessors, so that a small file can ask for a lot.
-void check_extent(const Document& document) {
+void check_extent(const Document& document, const ReadOptions& options) {
+  const std::size_t most_vertices = std::min(kMaxVertices, options.most_pose_bytes / sizeof(Vec3f));
   std::size_t vertices = 0, corners = 0;
   for (int n : document.visible_nodes) {
     const int mesh = document.nodes[static_cast<std::size_t>(n)].mesh;
@@ -46,7 +48,9 @@ void check_extent(const Document& document) {
           p.indices == kNone ? v : document.accessors[static_cast<std::size_t>(p.indices)].count;
       vertices += v;
       corners += p.mode == PrimitiveMode::kTriangles ? i : 3 * i;
-      if (vertices > kMaxVertices) throw too_large(document.path, "over 134 million vertices");
+      if (vertices > most_vertices)
+        throw too_large(document.path,
+                        "over " + std::to_string(most_vertices / 1'000'000) + " million vertices");
       if (corners > kMaxCorners) throw too_large(document.path, "over 178 million triangles");
     }
   }
@@ -59,8 +63,8 @@ struct Scene {
   std::vector<Instance> instances;
 };
 
-Scene read_scene(const Document& document, Notes& notes) {
-  check_extent(document);
+Scene read_scene(const Document& document, const ReadOptions& options, Notes& notes) {
+  check_extent(document, options);
   Scene scene;
   scene.skins = read_skins(document);
   for (int n : document.visible_nodes) {
@@ -117,7 +121,7 @@ std::vector<std::uint64_t> assemble(Document& document, const Scene& scene, cons
 
 /// Lists the clips' keys in the sequence.
 void lay_out_keys(const Document& document, const std::vector<AnimationClip>& clips,
-                  const RigPlan& plan, PoseSequence& sequence) {
+                  const RigPlan& plan, std::size_t most_bytes, PoseSequence& sequence) {
   for (const AnimationClip& clip : clips) {
     sequence.clips.push_back(
         {clip.name, sequence.key_count(), static_cast<std::uint32_t>(clip.key_times.size())});
@@ -125,11 +129,11 @@ void lay_out_keys(const Document& document, const std::vector<AnimationClip>& cl
                               clip.key_times.end());
   }
   const std::size_t bytes_per_key = sizeof(Vec3f) * sequence.vertex_count + plan.bytes_per_key();
-  if (sequence.key_times.size() > kMaxPoseBytes / bytes_per_key)
+  if (sequence.key_times.size() > most_bytes / bytes_per_key)
     throw Error(ErrorCode::kOverLimit,
                 document.path + ": " + std::to_string(sequence.key_times.size()) + " keys of " +
                     std::to_string(sequence.vertex_count) +
-                    " vertices take over 16 GiB; choose a lower --fps or fewer --clips");
+                    " vertices take over " + mebibytes(most_bytes) + "; choose a lower --fps or fewer --clips");
 }
 
 void sample_keys(const Document& document, const RigPlan& plan,
@@ -191,7 +195,7 @@ ReadResult read(const std::string& path, const ReadOptions& options, ProgressSin
   Notes notes;
   Document document = load_document(path, notes);
   const std::vector<AnimationClip> clips = read_clips(document, options);
-  const Scene scene = read_scene(document, notes);
+  const Scene scene = read_scene(document, options, notes);
 
   ReadResult result;
   PoseSequence& sequence = result.sequence;
@@ -200,7 +204,7 @@ ReadResult read(const std::string& path, const ReadOptions& options, ProgressSin
   const RigPlan plan(scene.instances, scene.skins);
   if (plan.most_links() > kMaxLinks)
     throw too_large(document.path, "over 4 billion joint weights or morph offsets");
-  lay_out_keys(document, clips, plan, sequence);
+  lay_out_keys(document, clips, plan, options.most_pose_bytes, sequence);
   sequence.rig = plan.shape();
   sample_keys(document, plan, clips, sequence, progress);
   simplify(document, plan, options, sequence);

@@ -1,6 +1,7 @@
 // What every reader of animated meshes takes and gives.
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,7 @@ struct ReadOptions {
   double fps = 30;                 ///< keys or frames per second, in (0, 10000]
   std::vector<std::string> clips;  ///< names of the animations to read; empty: all
   bool skeleton = false;           ///< keep what the rig's bones hang on; then no bones are joined
+  std::size_t most_pose_bytes = std::size_t{16} << 30;  ///< of glTF: what unfolds to more is refused
 };
 
 struct ReadResult {

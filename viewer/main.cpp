@@ -4,6 +4,7 @@
 #include <iostream>
 
 #include "common/base/error.h"
+#include "common/base/printable_text.h"
 #include "common/base/isa.h"
 #include "common/base/parallel.h"
 #include "viewer/app.h"
@@ -18,7 +19,7 @@ int main(int argc, char** argv) {
     mdk::App app(*options);
     return app.run();
   } catch (const mdk::Error& error) {
-    std::cerr << "mdview: " << error.what() << "\n";
+    std::cerr << "mdview: " << printable_line(error.what()) << "\n";
     return error.exit_status();
   } catch (const std::exception& fault) {
     std::cerr << "mdview: internal fault, please report: " << fault.what() << "\n";

@@ -287,6 +287,8 @@ Manifest read_manifest(const std::string& path) {
         1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n');
     throw bad_input(path, "is no JSON from line " + std::to_string(line) +
                               " on; look for a missing comma or quote there");
+  } catch (const Json::exception&) {
+    throw bad_input(path, "holds a number that is out of range");
   }
   Reader(manifest).read(root);
   return manifest;

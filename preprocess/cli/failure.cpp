@@ -3,6 +3,7 @@
 #include <new>
 
 #include "common/base/error.h"
+#include "common/base/printable_text.h"
 #include "preprocess/cli/interrupt.h"
 
 namespace mdk {
@@ -12,7 +13,7 @@ Failure describe_failure(const std::exception_ptr& thrown) {
   try {
     std::rethrow_exception(thrown);
   } catch (const Error& error) {
-    return {error.exit_status(), error.what()};
+    return {error.exit_status(), printable_line(error.what())};
   } catch (const Interrupted& interrupted) {
     return {interrupted.exit_status(), "interrupted; no file was left half-written"};
   } catch (const std::bad_alloc&) {

@@ -1,5 +1,6 @@
 // mdprep: runs one subcommand, and turns whatever goes wrong into one sentence on stderr and an exit
 // status.
+#include <csignal>
 #include <exception>
 #include <iostream>
 
@@ -38,4 +39,7 @@ int run(int argc, char** argv) {
 }  // namespace
 }  // namespace mdk
 
-int main(int argc, char** argv) { return mdk::run(argc, argv); }
+int main(int argc, char** argv) {
+  std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is an error to report, not the end
+  return mdk::run(argc, argv);
+}

@@ -148,6 +148,15 @@ TEST_F(Bake, AFailedBakeLeavesAnOldOutputAsItWas) {
   EXPECT_EQ(folder_.names(), (std::vector<std::string>{"a.mdk", "broken.gltf"}));
 }
 
+TEST_F(Bake, WhatATerminalWouldObeyIsNotPrinted) {
+  const std::string path = folder_.file("a.gltf");
+  write_text(path, R"({"asset": {"version": "2.0"}, "extensionsRequired": ["\u001b[2J\nx"]})");
+  const Outcome outcome = run_mdprep({"bake", path, "-o", folder_.file("a.mdk")});
+  EXPECT_EQ(outcome.status, 3);
+  EXPECT_TRUE(is_one_sentence(outcome.err)) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("needs the extension ?[2J?x, which is not supported"));
+}
+
 TEST_F(Bake, StoppedFromTheKeyboardItLeavesNothing) {
   write_sample_gltf(folder_.file("long.gltf"), {600, 64});
   ProgramRun bake(

@@ -6,40 +6,17 @@
 
 #include "formats/gltf_draco.h"
 #include "formats/gltf_meshopt.h"
+#include "tests/formats/compressed_gltf.h"
 #include "tests/formats/expect_error.h"
-#include "tests/formats/gltf_builder.h"
 
 #ifdef MDK_HAVE_MESHOPT
 #include <meshoptimizer.h>
-#endif
-#ifdef MDK_HAVE_DRACO
-#include <draco/compression/encode.h>
 #endif
 
 namespace mdk::test {
 namespace {
 
 using testing::HasSubstr;
-
-/// A hilly grid of n x n vertices.
-struct Grid {
-  explicit Grid(int n) {
-    for (int y = 0; y < n; ++y)
-      for (int x = 0; x < n; ++x) {
-        const float height = 0.25f * static_cast<float>((x * x + 3 * y) % 7);
-        for (const float c : {static_cast<float>(x), static_cast<float>(y), height})
-          positions.push_back(c);
-      }
-    for (int y = 0; y + 1 < n; ++y)
-      for (int x = 0; x + 1 < n; ++x)
-        for (const int corner : {0, 1, n, n, 1, n + 1})
-          indices.push_back(static_cast<std::uint32_t>(y * n + x + corner));
-  }
-  std::size_t vertices() const { return positions.size() / 3; }
-
-  std::vector<float> positions;
-  std::vector<std::uint32_t> indices;
-};
 
 PoseSequence read_plain(const Grid& grid) {
   GltfBuilder b;
@@ -86,87 +63,6 @@ void survive(const GltfBuilder& b) {
 
 #ifdef MDK_HAVE_MESHOPT
 
-using Code = std::vector<unsigned char>;
-
-Code vertex_code(const void* data, std::size_t count, std::size_t stride) {
-  Code code(meshopt_encodeVertexBufferBound(count, stride));
-  code.resize(meshopt_encodeVertexBuffer(code.data(), code.size(), data, count, stride));
-  return code;
-}
-
-Code triangle_code(const std::vector<std::uint32_t>& indices, std::size_t vertices) {
-  Code code(meshopt_encodeIndexBufferBound(indices.size(), vertices));
-  code.resize(meshopt_encodeIndexBuffer(code.data(), code.size(), indices.data(), indices.size()));
-  return code;
-}
-
-Code index_code(const std::vector<std::uint32_t>& indices, std::size_t vertices) {
-  Code code(meshopt_encodeIndexSequenceBound(indices.size(), vertices));
-  code.resize(
-      meshopt_encodeIndexSequence(code.data(), code.size(), indices.data(), indices.size()));
-  return code;
-}
-
-/// A file whose views are compressed in buffer 0, and stand in buffer 1, which has no data.
-class MeshoptFile {
- public:
-  /// Adds a compressed view and an accessor over it; returns the accessor.
-  int add(const Code& code, std::size_t count, std::size_t stride, const std::string& mode,
-          const std::string& accessor) {
-    const int plain = b.view(code);
-    const std::string& range = b.at("bufferViews", plain);
-    const std::string data = range.substr(1, range.size() - 2);
-    const std::string bytes = std::to_string(count * stride);
-    b.at("bufferViews", plain) = "{\"buffer\": 1, \"byteOffset\": " + std::to_string(stands_) +
-                                 ", \"byteLength\": " + bytes +
-                                 ", \"extensions\": {\"EXT_meshopt_compression\": {" + data +
-                                 ", \"byteStride\": " + std::to_string(stride) +
-                                 ", \"count\": " + std::to_string(count) + ", " + mode + "}}}";
-    stands_ += count * stride;
-    return b.add("accessors", "{\"bufferView\": " + std::to_string(plain) +
-                                  ", \"count\": " + std::to_string(count) + ", " + accessor + "}");
-  }
-
-  std::string json() {
-    b.set("extensionsRequired", "[\"EXT_meshopt_compression\"]");
-    GltfBuilder whole = b;
-    whole.add("buffers", "{\"byteLength\": " + std::to_string(b.bytes().size()) +
-                             ", \"uri\": \"data:application/octet-stream;base64," +
-                             base64(b.bytes()) + "\"}");
-    whole.add("buffers", "{\"byteLength\": " + std::to_string(stands_) +
-                             ", \"extensions\": {\"EXT_meshopt_compression\": "
-                             "{\"fallback\": true}}}");
-    return whole.json();
-  }
-
-  PoseSequence read() const { return read_text(MeshoptFile(*this).json()); }
-  static PoseSequence read_text(const std::string& json) {
-    const TempFolder folder;
-    return read_file(write_text(folder, "packed.gltf", json)).sequence;
-  }
-
-  GltfBuilder b;
-
- private:
-  std::size_t stands_ = 0;
-};
-
-const char* const kVec3 = "\"componentType\": 5126, \"type\": \"VEC3\"";
-const char* const kIndex = "\"componentType\": 5125, \"type\": \"SCALAR\"";
-const char* const kAttributes = "\"mode\": \"ATTRIBUTES\"";
-
-MeshoptFile packed(const Grid& grid) {
-  MeshoptFile file;
-  const int positions = file.add(vertex_code(grid.positions.data(), grid.vertices(), 12),
-                                 grid.vertices(), 12, kAttributes, kVec3);
-  const int indices = file.add(triangle_code(grid.indices, grid.vertices()), grid.indices.size(), 4,
-                               "\"mode\": \"TRIANGLES\"", kIndex);
-  file.b.mesh("\"POSITION\": " + std::to_string(positions),
-              ", \"indices\": " + std::to_string(indices));
-  file.b.add("nodes", "{\"mesh\": 0}");
-  return file;
-}
-
 TEST(GltfMeshopt, AttributesAndTrianglesAreThoseOfThePlainFile) {
   const Grid grid(24);
   EXPECT_EQ(turned_triangles(packed(grid).read()), turned_triangles(read_plain(grid)));
@@ -177,8 +73,7 @@ TEST(GltfMeshopt, IndexSequencesKeepTheirOrder) {
   MeshoptFile file;
   file.add(vertex_code(grid.positions.data(), grid.vertices(), 12), grid.vertices(), 12,
            kAttributes, kVec3);
-  file.add(index_code(grid.indices, grid.vertices()), grid.indices.size(), 4,
-           "\"mode\": \"INDICES\"", kIndex);
+  file.add(index_code(grid.indices, grid.vertices()), grid.indices.size(), 4, kIndices, kIndex);
   file.b.mesh("\"POSITION\": 0", ", \"indices\": 1");
   file.b.add("nodes", "{\"mesh\": 0}");
   EXPECT_EQ(file.read().triangles, read_plain(grid).triangles);
@@ -187,14 +82,8 @@ TEST(GltfMeshopt, IndexSequencesKeepTheirOrder) {
 
 TEST(GltfMeshopt, ReadsBinaryFilesWithAFallbackThatIsNotThere) {
   const Grid grid(9);
-  MeshoptFile file = packed(grid);
-  // The text of a .glb: buffer 0 is the binary chunk, buffer 1 has a uri that leads nowhere.
-  file.b.add("buffers", "{\"byteLength\": " + std::to_string(file.b.bytes().size()) + "}");
-  file.b.add("buffers",
-             "{\"byteLength\": 100000, \"uri\": \"none.bin\", \"extensions\": "
-             "{\"EXT_meshopt_compression\": {\"fallback\": true}}}");
   const TempFolder folder;
-  const ReadResult result = read_file(write_text(folder, "packed.glb", file.b.glb()));
+  const ReadResult result = read_file(write_text(folder, "packed.glb", packed(grid).glb()));
   EXPECT_EQ(turned_triangles(result.sequence), turned_triangles(read_plain(grid)));
   EXPECT_THAT(result.dependencies, testing::SizeIs(1));
 }
@@ -207,8 +96,7 @@ TEST(GltfMeshopt, FiltersAreUndone) {
   meshopt_encodeFilterExp(filtered.data(), grid.vertices(), 12, 23, grid.positions.data());
   file.add(vertex_code(filtered.data(), grid.vertices(), 12), grid.vertices(), 12,
            "\"mode\": \"ATTRIBUTES\", \"filter\": \"EXPONENTIAL\"", kVec3);
-  file.add(index_code(grid.indices, grid.vertices()), grid.indices.size(), 4,
-           "\"mode\": \"INDICES\"", kIndex);
+  file.add(index_code(grid.indices, grid.vertices()), grid.indices.size(), 4, kIndices, kIndex);
   const std::vector<float> turns = {0, 0, 1, 0, 1, 0, 0, 0};
   std::vector<std::int16_t> turn_code(8);
   meshopt_encodeFilterQuat(turn_code.data(), 2, 8, 16, turns.data());
@@ -282,7 +170,7 @@ TEST(GltfMeshopt, AnyCutOrFlippedByteIsReadOrRefusedInOneSentence) {
   const auto try_codes = [&](const Code& p, const Code& t) {
     MeshoptFile file;
     file.add(p, grid.vertices(), 12, kAttributes, kVec3);
-    file.add(t, grid.indices.size(), 4, "\"mode\": \"TRIANGLES\"", kIndex);
+    file.add(t, grid.indices.size(), 4, kTriangles, kIndex);
     file.b.mesh("\"POSITION\": 0", ", \"indices\": 1");
     file.b.add("nodes", "{\"mesh\": 0}");
     try {
@@ -310,47 +198,11 @@ TEST(GltfMeshopt, AnyCutOrFlippedByteIsReadOrRefusedInOneSentence) {
 
 #ifdef MDK_HAVE_DRACO
 
-/// The grid as a Draco mesh: POSITION has the unique id 0.
-std::string draco_code(const Grid& grid, int method) {
-  draco::Mesh mesh;
-  mesh.set_num_points(static_cast<std::uint32_t>(grid.vertices()));
-  draco::GeometryAttribute position;
-  position.Init(draco::GeometryAttribute::POSITION, nullptr, 3, draco::DT_FLOAT32, false, 12, 0);
-  const int id = mesh.AddAttribute(position, true, mesh.num_points());
-  for (std::uint32_t i = 0; i < mesh.num_points(); ++i)
-    mesh.attribute(id)->SetAttributeValue(draco::AttributeValueIndex(i), &grid.positions[3 * i]);
-  for (std::size_t i = 0; i < grid.indices.size(); i += 3)
-    mesh.AddFace({draco::PointIndex(grid.indices[i]), draco::PointIndex(grid.indices[i + 1]),
-                  draco::PointIndex(grid.indices[i + 2])});
-  draco::Encoder encoder;
-  encoder.SetEncodingMethod(method);
-  encoder.SetAttributeQuantization(draco::GeometryAttribute::POSITION, 14);
-  draco::EncoderBuffer buffer;
-  EXPECT_TRUE(encoder.EncodeMeshToBuffer(mesh, &buffer).ok());
-  return {buffer.data(), buffer.size()};
-}
-
-GltfBuilder draco_file(const Grid& grid, const std::string& code) {
-  GltfBuilder b;
-  const int view = b.view(std::vector<unsigned char>(code.begin(), code.end()));
-  const std::string positions = "{\"componentType\": 5126, \"type\": \"VEC3\", \"count\": ";
-  b.add("accessors", positions + std::to_string(grid.vertices()) + "}");
-  b.add("accessors", "{\"componentType\": 5125, \"type\": \"SCALAR\", \"count\": " +
-                         std::to_string(grid.indices.size()) + "}");
-  b.mesh("\"POSITION\": 0",
-         ", \"indices\": 1, \"extensions\": {\"KHR_draco_mesh_compression\": "
-         "{\"bufferView\": " +
-             std::to_string(view) + ", \"attributes\": {\"POSITION\": 0}}}");
-  b.add("nodes", "{\"mesh\": 0}");
-  b.set("extensionsRequired", "[\"KHR_draco_mesh_compression\"]");
-  return b;
-}
-
 TEST(GltfDraco, BothMethodsGiveThePlainTrianglesWithinTheirQuantisation) {
   const Grid grid(17);
   const std::vector<std::vector<float>> plain = turned_triangles(read_plain(grid));
-  for (const int method : {draco::MESH_SEQUENTIAL_ENCODING, draco::MESH_EDGEBREAKER_ENCODING}) {
-    SCOPED_TRACE(method);
+  for (const DracoMethod method : {DracoMethod::kSequential, DracoMethod::kEdgebreaker}) {
+    SCOPED_TRACE(static_cast<int>(method));
     PoseSequence s = read_built(draco_file(grid, draco_code(grid, method))).sequence;
     // A grid of 16 in 14 bits: off by half a thousandth, so that rounding to a 64th undoes it.
     for (Vec3f& p : s.positions)
@@ -365,7 +217,7 @@ TEST(GltfDraco, BothMethodsGiveThePlainTrianglesWithinTheirQuantisation) {
 
 TEST(GltfDraco, WhatDoesNotFitItsAccessorsIsRefused) {
   const Grid grid(4);
-  const std::string code = draco_code(grid, draco::MESH_EDGEBREAKER_ENCODING);
+  const std::string code = draco_code(grid, DracoMethod::kEdgebreaker);
   struct Case {
     const char* list;
     int index;
@@ -404,7 +256,7 @@ TEST(GltfDraco, CountsThatSoFewBytesCannotHoldAreRefusedBeforeTheyAreMade) {
 
 TEST(GltfDraco, OtherVersionsAndPointCloudsAreRefused) {
   const Grid grid(4);
-  const std::string good = draco_code(grid, draco::MESH_EDGEBREAKER_ENCODING);
+  const std::string good = draco_code(grid, DracoMethod::kEdgebreaker);
   for (const std::size_t at : {0u, 5u, 6u, 7u, 8u, 10u}) {
     std::string code = good;
     code[at] = static_cast<char>(code[at] ^ 0x82);
@@ -415,7 +267,7 @@ TEST(GltfDraco, OtherVersionsAndPointCloudsAreRefused) {
 
 TEST(GltfDraco, AnyCutOrFlippedByteIsReadOrRefusedInOneSentence) {
   const Grid grid(6);
-  for (const int method : {draco::MESH_SEQUENTIAL_ENCODING, draco::MESH_EDGEBREAKER_ENCODING}) {
+  for (const DracoMethod method : {DracoMethod::kSequential, DracoMethod::kEdgebreaker}) {
     const std::string good = draco_code(grid, method);
     for (std::size_t size = 1; size < good.size(); ++size)
       survive(draco_file(grid, good.substr(0, size)));

@@ -257,6 +257,19 @@ TEST(GltfHostile, OpensNoFileOutsideItsFolder) {
   expect_refused(ErrorCode::kBadInput, {"a.gltf", "folder"}, [&] { read_file(path); });
 }
 
+TEST(GltfHostile, ANameLongerThanFilesHaveIsNotRepeatedAtLength) {
+  GltfBuilder b = whole_file();
+  b.add("buffers", "{\"byteLength\": 36, \"uri\": \"data" + std::string(100000, 'A') + "\"}");
+  for (int v = 0; v < 9; ++v) b.at("bufferViews", v) = "{\"buffer\": 0, \"byteLength\": 36}";
+  try {
+    read_built(b);
+    ADD_FAILURE() << "nothing was thrown";
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("which at 100004 bytes is no name"));
+    EXPECT_LT(std::string(error.what()).size(), 300u);
+  }
+}
+
 TEST(GltfHostile, SaysWhichFileCannotBeRead) {
   const TempFolder folder;
   expect_refused(ErrorCode::kIo, {"nothing.glb", "no such file"},
