@@ -19,7 +19,7 @@ int main(int argc, char** argv) {
     mdk::App app(*options);
     return app.run();
   } catch (const mdk::Error& error) {
-    std::cerr << "mdview: " << printable_line(error.what()) << "\n";
+    std::cerr << "mdview: " << mdk::printable_line(error.what()) << "\n";
     return error.exit_status();
   } catch (const std::exception& fault) {
     std::cerr << "mdview: internal fault, please report: " << fault.what() << "\n";
