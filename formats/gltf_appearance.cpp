@@ -73,13 +73,15 @@ std::uint32_t AppearanceBuilder::load_texture(int image) {
   Bytes file;
   std::span<const unsigned char> bytes = source.bytes;
   if (bytes.empty()) {
+    std::string path;
     try {
-      const std::string path = resolve_uri(document_.path, source.uri);
+      path = resolve_uri(document_.path, source.uri);
       file = read_whole_file(path);
-      document_.dependencies.push_back(path);
     } catch (const Error&) {
+      if (!path.empty()) document_.unread.push_back(path);
       return leave_out("(\"" + source.uri.substr(0, 200) + "\") cannot be read");
     }
+    document_.dependencies.push_back(path);
     bytes = file;
   }
   const DecodedImage decoded = decode_image(bytes);

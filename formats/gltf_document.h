@@ -138,6 +138,7 @@ struct Document {
   std::vector<MaterialSource> materials;
   std::vector<ImageSource> images;
   std::vector<std::string> dependencies;  ///< every file read so far
+  std::vector<std::string> unread;        ///< images that could not be read
 };
 
 /// Reads and checks `path` and its buffers; images are left to whoever shows them. Throws Error as

@@ -214,6 +214,7 @@ ReadResult read(const std::string& path, const ReadOptions& options, ProgressSin
   check_consistency(sequence);
 
   result.dependencies = std::move(document.dependencies);
+  result.unread = std::move(document.unread);
   result.notes = notes.sentences();
   progress.report("read", 1.0);
   return result;

@@ -19,6 +19,7 @@ struct ReadOptions {
 struct ReadResult {
   PoseSequence sequence;
   std::vector<std::string> dependencies;  ///< every file read: the inputs, buffers, images
+  std::vector<std::string> unread;        ///< files named in them that could not be read: images
   std::vector<std::string> notes;         ///< one sentence per thing left out ("morph normals…")
 };
 

@@ -6,8 +6,15 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <atomic>
 
 namespace mdk {
+namespace {
+
+// Process-wide, as oneTBB's own limit of threads is: loops lie too deep to hand it down to each.
+std::atomic<void (*)()> loop_check = nullptr;
+
+}  // namespace
 
 ThreadLimit::ThreadLimit(int threads) {
   const std::size_t n =
@@ -16,6 +23,14 @@ ThreadLimit::ThreadLimit(int threads) {
 }
 
 ThreadLimit::~ThreadLimit() { delete static_cast<tbb::global_control*>(control_); }
+
+LoopCheck::LoopCheck(void (*check)()) { loop_check = check; }
+
+LoopCheck::~LoopCheck() { loop_check = nullptr; }
+
+void check_loop() {
+  if (void (*const check)() = loop_check) check();
+}
 
 int thread_count() {
   const auto limit =
@@ -27,15 +42,18 @@ void parallel_chunks(std::size_t n, std::size_t grain,
                      const std::function<void(std::size_t, std::size_t)>& body) {
   grain = std::max<std::size_t>(1, grain);
   const std::size_t chunks = (n + grain - 1) / grain;
+  const auto run_chunk = [&](std::size_t c) {
+    check_loop();
+    body(c * grain, std::min(n, (c + 1) * grain));
+  };
   if (chunks <= 1 || thread_count() == 1) {
-    for (std::size_t c = 0; c < chunks; ++c) body(c * grain, std::min(n, (c + 1) * grain));
+    for (std::size_t c = 0; c < chunks; ++c) run_chunk(c);
     return;
   }
   tbb::parallel_for(
       tbb::blocked_range<std::size_t>(0, chunks, 1),
       [&](const tbb::blocked_range<std::size_t>& r) {
-        for (std::size_t c = r.begin(); c != r.end(); ++c)
-          body(c * grain, std::min(n, (c + 1) * grain));
+        for (std::size_t c = r.begin(); c != r.end(); ++c) run_chunk(c);
       },
       tbb::simple_partitioner{});
 }

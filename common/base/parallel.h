@@ -20,6 +20,20 @@ class ThreadLimit {
   void* control_;
 };
 
+/// While it lives, every parallel loop calls `check` before each chunk, on any of its threads; what
+/// `check` throws ends the loop. So long work can be told to stop. One at a time; it counts for the
+/// whole process, as a ThreadLimit does.
+class LoopCheck {
+ public:
+  explicit LoopCheck(void (*check)());
+  ~LoopCheck();
+  LoopCheck(const LoopCheck&) = delete;
+  LoopCheck& operator=(const LoopCheck&) = delete;
+};
+
+/// Calls the check there is, for long work outside of parallel loops.
+void check_loop();
+
 /// How many threads a parallel loop may use now.
 int thread_count();
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <fstream>
 
 #include "common/base/error.h"
 #include "formats/mapped_file.h"
@@ -35,6 +36,11 @@ std::vector<FileState> states_of_files(const std::vector<std::string>& paths) {
 
 bool are_unchanged(const std::vector<FileState>& states) {
   return std::all_of(states.begin(), states.end(), is_unchanged);
+}
+
+bool is_readable(const std::string& path) {
+  std::error_code problem;
+  return std::filesystem::is_regular_file(path, problem) && std::ifstream(path).is_open();
 }
 
 }  // namespace mdk

@@ -23,4 +23,7 @@ std::vector<FileState> states_of_files(const std::vector<std::string>& paths);
 /// Whether every file is there and holds what it held.
 bool are_unchanged(const std::vector<FileState>& states);
 
+/// Whether it is a file and opens.
+bool is_readable(const std::string& path);
+
 }  // namespace mdk

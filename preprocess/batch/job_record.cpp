@@ -61,6 +61,7 @@ JobRecord record_of(const Json& json) {
   record.peak_memory_bytes = json.at("peak_memory_bytes");
   record.inputs = states_of(json.at("inputs"));
   record.outputs = states_of(json.at("outputs"));
+  record.unread = json.at("unread");
   if (!json.at("report").is_null()) record.report = json.at("report").dump();
   return record;
 }
@@ -88,6 +89,7 @@ std::string job_record_json(const JobRecord& record) {
       {"peak_memory_bytes", record.peak_memory_bytes},
       {"inputs", json_of(record.inputs)},
       {"outputs", json_of(record.outputs)},
+      {"unread", record.unread},
       {"report", record.report.empty() ? Json() : Json::parse(record.report)},
   };
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";

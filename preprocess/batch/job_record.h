@@ -37,6 +37,7 @@ struct JobRecord {
   double seconds = 0;
   std::uint64_t peak_memory_bytes = 0;
   std::vector<FileState> inputs, outputs;  ///< of a job that is done
+  std::vector<std::string> unread;         ///< inputs it went without: images that are not there
   std::string report;                      ///< the command's own JSON, or empty
 };
 

@@ -87,7 +87,8 @@ bool read_all_sources(const JobRecord& now, const JobRecord& last) {
 bool is_up_to_date(const JobRecord& last, const JobRecord& now) {
   return last.status == JobStatus::kDone && last.command_hash == now.command_hash &&
          last.program_hash == now.program_hash && last.version == now.version &&
-         read_all_sources(now, last) && are_unchanged(last.inputs) && are_unchanged(last.outputs);
+         read_all_sources(now, last) && are_unchanged(last.inputs) && are_unchanged(last.outputs) &&
+         std::none_of(last.unread.begin(), last.unread.end(), is_readable);
 }
 
 std::set<std::string> output_folders(const JobRequest& request) {
@@ -118,10 +119,19 @@ void require_needed(const std::vector<std::string>& needs) {
   }
 }
 
+/// Whose time stamp changes where `path` appears.
+std::string existing_folder_of(const std::string& path) {
+  fs::path folder = fs::path(path).parent_path();
+  std::error_code problem;
+  while (!folder.empty() && !fs::is_directory(folder, problem)) folder = folder.parent_path();
+  return folder.empty() ? "." : folder.string();
+}
+
 void write_depfile(const JobRequest& request, const JobRecord& record) {
   if (request.depfile.empty()) return;
   std::vector<std::string> names;
   for (const FileState& input : record.inputs) names.push_back(input.path);
+  for (const std::string& path : record.unread) names.push_back(existing_folder_of(path));
   write_text_file(request.depfile, depfile_text(request.record, names));
 }
 
@@ -134,6 +144,7 @@ void run_command(const CommandLine& line, JobRecord& record) {
   record.seconds = watch.seconds();
   record.inputs = states_of_files(context.inputs);
   record.outputs = states_of_files(context.outputs);
+  record.unread = context.unread;
   record.report = context.report;
   record.status = JobStatus::kDone;
 }

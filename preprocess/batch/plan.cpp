@@ -128,6 +128,9 @@ class Planner {
   void plan_bake(const ManifestItem& item, const Match& match) {
     Job job = start_job(item, match);
     const std::string output = filled(item, item.output, match, "/output");
+    if (std::ranges::count(job.inputs, output) > 0)
+      refuse_place(manifest_, item.place + "/output",
+                   output + " is the input; give the output a name of its own");
     job.command.insert(job.command.end(), {"-o", output});
     job.outputs = {output};
     finish_job(item, std::move(job), output);

@@ -169,7 +169,7 @@ void run_bake(const BakeArguments& arguments, CommandContext& context) {
   const Source source_files = find_source(arguments.inputs);
   keep_inputs(arguments, source_files.files.files);
   check_places(arguments);
-  defer_interrupts();
+  const DeferredInterrupts interrupts;
 
   BakeOutcome outcome{joined_inputs(arguments), arguments.output, {}, 0, 0};
   Stopwatch total, stage;
@@ -196,6 +196,7 @@ void run_bake(const BakeArguments& arguments, CommandContext& context) {
   outcome.peak_memory_bytes = peak_memory_bytes();
 
   context.inputs = source.dependencies;
+  context.unread = source.unread;
   context.outputs = {arguments.output};
   context.report = bake_report_json(model, result.stats, outcome);
   if (!arguments.report.empty()) write_text_file(arguments.report, context.report);
@@ -210,9 +211,10 @@ void run_bake(const BakeArguments& arguments, CommandContext& context) {
 
 void add_decompose_options(CLI::App& command, BakeArguments& arguments) {
   command
-      .add_option("--decompose", arguments.mode,
-                  "motion: clusters of triangles that move alike; bones: a cluster for each bone\n"
-                  "or rigid part; none: one cluster per mesh, which does not move (default: motion).")
+      .add_option(
+          "--decompose", arguments.mode,
+          "motion: clusters of triangles that move alike; bones: a cluster for each bone\n"
+          "or rigid part; none: one cluster per mesh, which does not move (default: motion).")
       ->type_name("motion|bones|none");
   command
       .add_option("--sampling", arguments.sampling,

@@ -15,6 +15,7 @@ struct CommandContext {
 
   // Filled in by bake, verify and render.
   std::vector<std::string> inputs;   ///< every file that was read
+  std::vector<std::string> unread;   ///< files that would have been, could they be read: images
   std::vector<std::string> outputs;  ///< every file that was made, but for reports
   std::string report;                ///< JSON, or empty
 };

@@ -1,18 +1,20 @@
 #include "preprocess/cli/interrupt.h"
 
+#include <atomic>
 #include <csignal>
 
 namespace mdk {
 namespace {
 
 // A signal handler can reach nothing but a variable of static storage.
-volatile std::sig_atomic_t pending_signal = 0;
+std::atomic<int> pending_signal = 0;
+static_assert(std::atomic<int>::is_always_lock_free);
 
 extern "C" void remember_signal(int signal_number) { pending_signal = signal_number; }
 
 }  // namespace
 
-void defer_interrupts() {
+DeferredInterrupts::DeferredInterrupts() : loops_(throw_if_interrupted) {
   struct sigaction action = {};
   action.sa_handler = remember_signal;
   action.sa_flags = SA_RESTART | static_cast<int>(SA_RESETHAND);
@@ -22,7 +24,7 @@ void defer_interrupts() {
 }
 
 void throw_if_interrupted() {
-  if (pending_signal != 0) throw Interrupted(pending_signal);
+  if (const int signal_number = pending_signal) throw Interrupted(signal_number);
 }
 
 }  // namespace mdk

@@ -4,6 +4,8 @@
 
 #include <exception>
 
+#include "common/base/parallel.h"
+
 namespace mdk {
 
 /// The user asked to stop. Not an Error: nothing is wrong.
@@ -18,10 +20,17 @@ class Interrupted final : public std::exception {
   int signal_number_;
 };
 
-/// From now on the first SIGINT or SIGTERM is only remembered; a second one ends the process.
-void defer_interrupts();
-
 /// Throws Interrupted where a remembered signal waits.
 void throw_if_interrupted();
+
+/// From now on the first SIGINT or SIGTERM is only remembered, and a second one ends the process.
+/// While it lives, parallel loops look for it and throw Interrupted.
+class DeferredInterrupts {
+ public:
+  DeferredInterrupts();
+
+ private:
+  LoopCheck loops_;
+};
 
 }  // namespace mdk

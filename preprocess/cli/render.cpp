@@ -244,7 +244,7 @@ void run_render(const RenderArguments& arguments, CommandContext& context) {
   const Model& model = file.model();
   const std::vector<PlannedFrame> frames = plan_frames(arguments, model);
   check_outputs(arguments, frames);
-  defer_interrupts();
+  const DeferredInterrupts interrupts;
   const Json rows = render_frames(arguments, model, frames, context.overwrite);
   context.inputs = {arguments.input};
   if (is_film(arguments.output)) {

@@ -142,7 +142,7 @@ void run_verify(const VerifyArguments& arguments, CommandContext& context) {
   parse_count("--seed", arguments.seed, {0, 0xffffffffu});
   if (arguments.samples != "auto") parse_count("--samples", arguments.samples, kSampleRange);
   if (!arguments.source_paths.empty()) find_source(arguments.source_paths);
-  defer_interrupts();
+  const DeferredInterrupts interrupts;
 
   const MdkFile file(arguments.input);
   const VerifyReport report = verify_file(file, arguments, progress);

@@ -90,6 +90,31 @@ TEST_F(JobTest, ContentDecidesWhetherItRunsAgain) {
   EXPECT_FALSE(said_up_to_date(bake())) << "the record is cut";
 }
 
+TEST_F(JobTest, AnImageThatWasMissingAndAppearsIsAChange) {
+  const std::string image = folder_.read("a.png");
+  std::filesystem::remove(at("a.png"));
+  ASSERT_FALSE(said_up_to_date(bake()));
+  EXPECT_THAT(record("r/a.json").unread, ElementsAre(at("a.png")));
+  const std::string plain = folder_.read("out/a.mdk");
+  EXPECT_TRUE(said_up_to_date(bake()));
+  std::filesystem::create_directory(at("a.png"));
+  EXPECT_TRUE(said_up_to_date(bake())) << "a folder is no image";
+  std::filesystem::remove(at("a.png"));
+  folder_.write("a.png", image);
+  EXPECT_FALSE(said_up_to_date(bake()));
+  EXPECT_FALSE(folder_.read("out/a.mdk") == plain);
+  EXPECT_TRUE(record("r/a.json").unread.empty());
+}
+
+TEST_F(JobTest, TheDepfileNamesTheFolderWhereAMissingImageWouldAppear) {
+  std::filesystem::remove(at("a.png"));
+  ASSERT_EQ(job("r/a.json", {"bake", at("a.gltf"), "-o", at("out/a.mdk"), "-q"},
+                {"--depfile", at("r/a.d")})
+                .status,
+            0);
+  EXPECT_THAT(folder_.read("r/a.d"), testing::EndsWith(" \\\n  " + folder_.path() + "\n"));
+}
+
 TEST_F(JobTest, ANewFrameOfANumberedSequenceIsAChange) {
   const auto frame = [&](int number, int height) {
     folder_.write("walk/f_" + std::to_string(number) + ".obj",

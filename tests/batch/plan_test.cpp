@@ -137,6 +137,8 @@ TEST_F(Plan, MistakesAreToldWithTheirPlaceAndCure) {
           {"/defaults/bake/output"});
   refused(R"({"bakes": [{"input": "a", "output": "x"}, {"input": "b", "output": "./x"}]})",
           {"/bakes/1", "x is made by /bakes/0"});
+  refused(R"({"bakes": [{"input": ["a.obj", "a.pc2"], "output": "./a.pc2"}]})",
+          {"/bakes/0/output", "a.pc2 is the input"});
   refused(R"({"renders": [{"input": "a.mdk", "output": "#.png", "frames": "9:1"}]})",
           {"/renders/0/frames"});
   refused(R"({"renders": [{"input": ["a.mdk", "b.mdk"], "output": "#.png"}]})",

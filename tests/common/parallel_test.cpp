@@ -42,6 +42,29 @@ TEST(Parallel, EmptyRangeCallsNothingAndExceptionsArePassedOn) {
   }
 }
 
+std::atomic<int> calls_left;
+
+TEST(Parallel, ACheckEndsALoopBeforeItsNextChunkWhileItLives) {
+  for (const int threads : {1, 2}) {
+    const ThreadLimit limit(threads);
+    std::atomic<int> chunks = 0;
+    const auto loop = [&] {
+      parallel_chunks(1000, 1, [&](std::size_t, std::size_t) { ++chunks; });
+    };
+    calls_left = 20;
+    {
+      const LoopCheck check([] {
+        if (--calls_left < 0) throw std::runtime_error("told to stop");
+      });
+      EXPECT_THROW(loop(), std::runtime_error);
+      EXPECT_EQ(chunks, 20);
+      EXPECT_THROW(check_loop(), std::runtime_error);
+    }
+    loop();
+    EXPECT_EQ(chunks, 1020);
+  }
+}
+
 TEST(Parallel, ThreadLimitHolds) {
   {
     const ThreadLimit limit(1);

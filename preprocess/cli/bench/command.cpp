@@ -116,7 +116,7 @@ void require_no_mismatches(const BenchRun& run) {
 BenchResults measure(const BenchArguments& arguments) {
   ProgressBar progress(std::cerr, progress_style(arguments.messages));
   for (const std::string& input : arguments.inputs) MdkFile{input};  // refuse any before timing one
-  defer_interrupts();
+  const DeferredInterrupts interrupts;
   const ImageSize size = parse_image_size(arguments.view.size);
   BenchRun run{std::string(isa_in_use()),
                thread_count(),
