@@ -11,6 +11,7 @@
 #include <string>
 
 #include "common/base/error.h"
+#include "common/base/parallel.h"
 #include "common/structures/kd_events.h"
 
 namespace mdk {
@@ -97,6 +98,7 @@ class KdTreeBuilder {
  private:
   /// Fills node `index` and everything under it. Takes its events off the stacks.
   void build_node(std::uint32_t index, const Cell& cell) {
+    check_loop();
     const Split split = cheapest_split(cell);
     if (split.cost >= static_cast<double>(config_.intersect_cost) * cell.count) {
       make_leaf(index, cell);

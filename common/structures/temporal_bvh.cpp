@@ -8,6 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "common/base/parallel.h"
+
 namespace mdk {
 namespace {
 
@@ -94,6 +96,7 @@ class TemporalBuilder {
   }
 
   void build_node(std::uint32_t index, const Range& range) {
+    check_loop();
     std::vector<Aabb> node(poses_);
     for (std::uint32_t p = 0; p < poses_; ++p)
       for (std::uint32_t i = range.begin; i < range.end; ++i) node[p].extend(pose(p)[items_[i]]);

@@ -12,7 +12,7 @@ constexpr std::string_view kPageRules = R"(
 html{scroll-behavior:smooth;scroll-padding-top:1rem;-webkit-text-size-adjust:100%}
 body{margin:0;background:var(--ground);color:var(--ink);
 font:15px/1.55 system-ui,-apple-system,'Segoe UI',Roboto,sans-serif}
-.page{max-width:1440px;margin:0 auto;padding:1.5rem;display:grid;gap:1.5rem 2rem;
+.page{max-width:1440px;margin:0 auto;padding:1.5rem;display:grid;gap:1.25rem;
 grid-template-columns:minmax(0,1fr)}
 header,main,nav{min-width:0}
 h1{font-size:1.75rem;line-height:1.2;margin:.2rem 0 1rem;letter-spacing:-.01em}
@@ -34,9 +34,9 @@ nav li{margin:.25rem 0}
 nav summary{font-weight:600;cursor:pointer}
 .scroll{overflow-x:auto;margin:.8rem 0;border:1px solid var(--edge);border-radius:8px}
 table{border-collapse:collapse;width:100%;font-size:.86rem;font-variant-numeric:tabular-nums}
-th,td{padding:.34rem .65rem;text-align:right;white-space:nowrap;border-bottom:1px solid var(--edge)}
+th,td{padding:.34rem .42rem;text-align:right;white-space:nowrap;border-bottom:1px solid var(--edge)}
 th{background:var(--head);font-weight:600;white-space:normal;vertical-align:bottom;
-line-height:1.25;min-width:4.2rem}
+line-height:1.25;min-width:3.2rem}
 tbody tr:last-child td{border-bottom:0}
 tbody tr:hover td{background:var(--head)}
 .l{text-align:left}
@@ -46,14 +46,14 @@ th:first-child{background:var(--head);z-index:1}
 figure{margin:.8rem 0 0}
 figcaption{color:var(--faint);font-size:.9rem;max-width:78ch;margin:0 0 .6rem}
 .charts{display:grid;gap:.75rem;grid-template-columns:repeat(auto-fill,minmax(min(100%,23rem),1fr))}
-.charts.wide{grid-template-columns:repeat(auto-fill,minmax(min(100%,30rem),1fr))}
-.chart{display:block;width:100%;height:auto;background:var(--chart-ground);
+.charts.wide{grid-template-columns:repeat(auto-fill,minmax(min(100%,27rem),1fr))}
+.chart{display:block;width:100%;max-width:40rem;height:auto;background:var(--chart-ground);
 border:1px solid var(--edge);border-radius:8px}
 .legend{display:flex;flex-wrap:wrap;gap:.2rem 1.1rem;list-style:none;margin:0 0 .7rem;padding:0;
 font-size:.86rem}
 .legend li{display:flex;align-items:center;gap:.45rem;white-space:nowrap}
 @media (min-width:1100px){
-.page{grid-template-columns:15.5rem minmax(0,1fr)}
+.page{grid-template-columns:13.5rem minmax(0,1fr)}
 .head{grid-column:1/-1;margin-bottom:0}
 nav{position:sticky;top:1.25rem;align-self:start;max-height:calc(100vh - 2.5rem);overflow:auto}
 }
