@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
-#include <numeric>
 
 #include "common/base/parallel.h"
 #include "common/base/stopwatch.h"
@@ -12,18 +11,26 @@ namespace mdk {
 namespace {
 
 constexpr std::size_t kMostTimedTiles = 16384;
-constexpr std::size_t kTilesPerOutlier = 32;
+constexpr std::size_t kTilesPerDear = 32;
+constexpr float kInterrupted = 8;     ///< times what a dear tile takes
+constexpr double kMostGrowth = 1.25;  ///< of a frame on the last one that is believed
 constexpr int kTrialsToSettle = 2;
 constexpr std::size_t kFramesBetweenChecks = 64;
 constexpr double kHopeless = 1.4;  ///< times the best: not worth a second trial
 constexpr double kWorthChanging = 0.98;
 constexpr double kTrialShare = 0.03;     ///< of all frames' time
 constexpr double kFramesInAdvance = 25;  ///< trials may spend the share of so many frames to come
-constexpr double kUnknownExcess = 0.3;   ///< expected of a first trial, in frames
+constexpr double kTrialFrames = 2;
+constexpr double kUnknownExcess = 0.3;  ///< expected of a first trial, in frames
 constexpr std::size_t kMostViews = 32;
 
-/// One in four, the same in every frame.
-bool is_timed(const TileRays& tile) { return (tile.x + 2 * tile.y) / kTileSide % 4 == 0; }
+/// Looking at a clock costs as much as tracing an empty tile, so one tile in so many is timed.
+constexpr std::uint32_t kTilesPerTimed = 16;
+
+/// The same tiles in every frame, spread over the picture.
+bool is_timed(const TileRays& tile) {
+  return (tile.x + 5 * tile.y) / kTileSide % kTilesPerTimed == 0;
+}
 
 template <class... Values>
 std::string formatted(const char* format, Values... values) {
@@ -62,14 +69,14 @@ void TechniqueChooser::set_view(const PinholeRays& rays) {
   if (is_first_frame_) enter_view(rays);
   ++views_.back().frames;
   candidate(serving_).set_view(rays);
-  tiles_ = timed_ = 0;
+  timed_ = 0;
 }
 
 bool TechniqueChooser::trace(const TileRays& tile, TileHits& hits, TileScratch& scratch,
                              TraceCounters* counters) const {
   const Technique& serving = *techniques_[serving_];
-  tiles_.fetch_add(1, std::memory_order_relaxed);
-  const std::size_t number = is_timed(tile) ? timed_++ : kMostTimedTiles;
+  if (!is_timed(tile)) return serving.trace(tile, hits, scratch, counters);
+  const std::size_t number = timed_++;
   const Stopwatch watch;
   const bool is_hit = serving.trace(tile, hits, scratch, counters);
   if (number < kMostTimedTiles) tile_ms_[number] = static_cast<float>(watch.milliseconds());
@@ -143,25 +150,36 @@ TechniqueChooser::View& TechniqueChooser::enter_view(const PinholeRays& rays) {
 double TechniqueChooser::measured_frame_ms() {
   const std::size_t timed = std::min<std::size_t>(timed_, kMostTimedTiles);
   if (timed == 0) return 0;
-  // Tiles that take extremely long were interrupted: left out, for all candidates alike.
+  // Tiles that take much longer than other dear ones were interrupted.
   const auto end = tile_ms_.begin() + static_cast<std::ptrdiff_t>(timed);
-  const auto kept = tile_ms_.begin() + static_cast<std::ptrdiff_t>(timed / kTilesPerOutlier);
-  std::nth_element(tile_ms_.begin(), kept, end, std::greater<>());
-  const double per_tile = std::accumulate(kept, end, 0.0) / static_cast<double>(end - kept);
-  return update_ms_ + per_tile * static_cast<double>(tiles_) / thread_count();
+  const auto dear = tile_ms_.begin() + static_cast<std::ptrdiff_t>(timed / kTilesPerDear);
+  std::nth_element(tile_ms_.begin(), dear, end, std::greater<>());
+  double sum = 0;
+  for (auto tile = tile_ms_.begin(); tile != end; ++tile)
+    sum += static_cast<double>(std::min(*tile, kInterrupted * *dear));
+  const double scale = static_cast<double>(timed_) / static_cast<double>(timed);
+  return update_ms_ + sum * scale * kTilesPerTimed / thread_count();
 }
 
 void TechniqueChooser::learn(View& view, double frame_ms) const {
   Standing& served = view.standings[serving_];
   if (serving_ == view.incumbent || view.unit_ms == 0) {
     const double unit = frame_ms / served.relative_cost;
-    view.unit_ms = view.unit_ms == 0 ? unit : (view.unit_ms + unit) / 2;
+    view.unit_ms =
+        view.unit_ms == 0 ? unit : (view.unit_ms + std::min(unit, kMostGrowth * view.unit_ms)) / 2;
     return;
   }
-  const double relative = frame_ms / view.unit_ms;
-  served.relative_cost = served.trials == 0 ? relative : (served.relative_cost + relative) / 2;
-  ++served.trials;
   view.spent_ms += std::max(0.0, frame_ms - view.cost_ms(view.incumbent));
+  if (is_warming_up_) return;
+  const double relative = frame_ms / view.unit_ms;
+  if (served.trials == 0) {
+    served.relative_cost = relative;
+  } else if (served.trials < kTrialsToSettle) {  // the same moment, nearly: noise only adds
+    served.relative_cost = std::min(served.relative_cost, relative);
+  } else {
+    served.relative_cost = (served.relative_cost + relative) / 2;
+  }
+  ++served.trials;
   const Standing& incumbent = view.standings[view.incumbent];
   if (served.relative_cost < kWorthChanging * incumbent.relative_cost) {
     view.standings[view.incumbent].trials = std::max(1, incumbent.trials);
@@ -171,8 +189,12 @@ void TechniqueChooser::learn(View& view, double frame_ms) const {
 
 /// The incumbent, or a challenger: those whose trials are not complete, in turn; later, at long
 /// intervals, each again. Between two trials the incumbent serves, to be measured beside them.
-std::size_t TechniqueChooser::next_to_serve(View& view) const {
+std::size_t TechniqueChooser::next_to_serve(View& view) {
   const bool was_trial = serving_ != view.incumbent;
+  if (is_warming_up_) {
+    is_warming_up_ = false;
+    if (was_trial) return serving_;
+  }
   if (was_trial || view.unit_ms == 0) return view.incumbent;
   const auto is_settled = [&](std::size_t i) {
     const Standing& standing = view.standings[i];
@@ -186,6 +208,7 @@ std::size_t TechniqueChooser::next_to_serve(View& view) const {
     if (i == view.incumbent || (settled && !check) || !can_afford(view, i)) continue;
     if (settled) view.next_check = view.frames + kFramesBetweenChecks;
     view.last_challenger = i;
+    is_warming_up_ = true;
     return i;
   }
   return view.incumbent;
@@ -194,7 +217,7 @@ std::size_t TechniqueChooser::next_to_serve(View& view) const {
 bool TechniqueChooser::can_afford(const View& view, std::size_t challenger) const {
   const double frame_ms = view.cost_ms(view.incumbent);
   const double excess = view.standings[challenger].trials > 0
-                            ? std::max(0.0, view.cost_ms(challenger) - frame_ms)
+                            ? kTrialFrames * std::max(0.0, view.cost_ms(challenger) - frame_ms)
                             : kUnknownExcess * frame_ms;
   const double frames = kFramesInAdvance + static_cast<double>(view.frames);
   return view.spent_ms + excess <= kTrialShare * frames * frame_ms;

@@ -1,9 +1,10 @@
 // TechniqueChooser: traces with whichever of several techniques costs least on this model, view and
 // machine, as measured.
 //
-//     most frames    the incumbent serves, and a quarter of its tiles is timed
-//     a trial        a challenger serves one frame instead; its cost counts relative to the
-//                    incumbent's in the frames around it, since motion changes both alike
+//     most frames    the incumbent serves, and one tile in sixteen is timed
+//     a trial        a challenger serves two frames instead; the first brings its structure back
+//                    into the caches, the cost of the second counts relative to the incumbent's in
+//                    the frames around it, since motion changes both alike
 //
 // In a new view each challenger is tried, twice unless hopeless; later one at a time, seldom, since
 // motion may wear a refitted hierarchy out. No trial begins that would bring what trials have cost
@@ -68,7 +69,7 @@ class TechniqueChooser final : public Technique {
   View& enter_view(const PinholeRays& rays);
   double measured_frame_ms();
   void learn(View& view, double frame_ms) const;
-  std::size_t next_to_serve(View& view) const;
+  std::size_t next_to_serve(View& view);
   bool can_afford(const View& view, std::size_t challenger) const;
 
   const Model& model_;
@@ -77,9 +78,10 @@ class TechniqueChooser final : public Technique {
   std::vector<View> views_;                             ///< the present one last
   std::size_t serving_ = 0;                             ///< the present frame
   bool is_first_frame_ = true;  ///< of the view: what it costs is not typical
+  bool is_warming_up_ = false;  ///< the first frame of a trial
   double update_ms_ = 0;
-  mutable std::vector<float> tile_ms_;  ///< of the timed tiles of the present frame
-  mutable std::atomic<std::size_t> tiles_ = 0, timed_ = 0;
+  mutable std::vector<float> tile_ms_;          ///< of the timed tiles of the present frame
+  mutable std::atomic<std::size_t> timed_ = 0;  ///< tiles
 };
 
 }  // namespace mdk
