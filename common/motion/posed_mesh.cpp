@@ -4,6 +4,7 @@
 
 #include "common/base/error.h"
 #include "common/base/parallel.h"
+#include "common/base/stopwatch.h"
 #include "common/math/affine_path.h"
 
 namespace mdk {
@@ -26,36 +27,113 @@ bool is_usable(const Aabb& b) {
 
 }  // namespace
 
-std::span<const Vec3f> PosedMesh::key_pose(std::uint32_t key, std::uint32_t kept) {
+PosedMesh::KeyPose PosedMesh::key_pose(std::uint32_t key, std::uint32_t kept) {
   const std::uint32_t vertices = model_->vertex_count;
-  if (model_->poses.kind == PoseKind::kKeyPositions)
-    return model_->poses.key_positions.subspan(static_cast<std::size_t>(key) * vertices, vertices);
-  for (const DecodedKey& decoded : decoded_)
-    if (decoded.key == key) return decoded.positions;
-  DecodedKey& slot = decoded_[0].key == kept ? decoded_[1] : decoded_[0];
+  if (model_->poses.kind == PoseKind::kKeyPositions) {
+    const std::size_t first = static_cast<std::size_t>(key) * vertices;
+    return {model_->poses.key_positions.subspan(first, vertices).data(), nullptr};
+  }
+  for (DecodedKey& decoded : work_->decoded)
+    if (decoded.key == key) return {decoded.positions.data(), &decoded};
+  auto& [first, second] = work_->decoded;
+  DecodedKey& slot = first.key == kept ? second : first;
   slot.key = key;
   slot.positions.resize(vertices);
-  parallel_chunks(vertices, kDecodedPerChunk, [&](std::size_t begin, std::size_t end) {
-    const VertexRange range{static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end)};
-    decode_pose(*model_, key, range, std::span(slot.positions).subspan(begin, end - begin));
-  });
-  return slot.positions;
+  slot.owned.begin(model_->cluster_count());
+  slot.complete = false;
+  return {slot.positions.data(), &slot};
 }
 
 void PosedMesh::set_time(const KeyInterval& at) {
+  const std::uint32_t vertices = model_->vertex_count;
   at_ = at;
   live_clusters_.clear();
-  const std::span<const Vec3f> from = key_pose(at.key0, at.key1);
+  from_ = key_pose(at.key0, at.key1);
+  to_ = {};
   if (at.s == 0.0f || at.key0 == at.key1) {
-    positions_ = from;
-    return;
+    positions_ = {from_.positions, vertices};
+    work_->complete = from_.decoded == nullptr || from_.decoded->complete;
+  } else {
+    to_ = key_pose(at.key1, at.key0);
+    work_->between.resize(vertices);
+    positions_ = work_->between;
+    work_->complete = false;
   }
-  const std::span<const Vec3f> to = key_pose(at.key1, at.key0);
-  between_.resize(from.size());
-  parallel_chunks(from.size(), kVerticesPerChunk, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) between_[i] = from[i] + (to[i] - from[i]) * at.s;
+  work_->owned.begin(model_->cluster_count());
+  work_->ready.begin(model_->cluster_count());
+}
+
+const ClusterVertices& PosedMesh::vertices() const {
+  std::call_once(work_->vertices_known, [this] { work_->vertices.emplace(*model_); });
+  return *work_->vertices;
+}
+
+void PosedMesh::decode_owned(const KeyPose& pose, std::uint32_t c) const {
+  if (pose.decoded == nullptr || pose.decoded->complete) return;
+  pose.decoded->owned.once(c, [&] {
+    for (const VertexRange& run : vertices().owned(c))
+      decode_pose(*model_, *pose.decoded->key, run,
+                  std::span(pose.decoded->positions).subspan(run.begin, run.size()));
   });
-  positions_ = between_;
+}
+
+void PosedMesh::move_between(const VertexRange& range) const {
+  for (std::uint32_t i = range.begin; i < range.end; ++i)
+    work_->between[i] = from_.positions[i] + (to_.positions[i] - from_.positions[i]) * at_.s;
+}
+
+void PosedMesh::pose_owned(std::uint32_t c) const {
+  work_->owned.once(c, [&] {
+    const Stopwatch watch;
+    decode_owned(from_, c);
+    decode_owned(to_, c);
+    if (is_between())
+      for (const VertexRange& run : vertices().owned(c)) move_between(run);
+    work_->nanoseconds += static_cast<std::uint64_t>(watch.seconds() * 1e9 / thread_count());
+  });
+}
+
+void PosedMesh::pose_cluster(std::uint32_t c) const {
+  for (const std::uint32_t owner : vertices().owners(c)) pose_owned(owner);
+  work_->ready.set_done(c);
+}
+
+void PosedMesh::require_around(std::uint32_t c) const {
+  if (work_->complete) return;
+  for (const std::uint32_t near : vertices().around(c)) require(near);
+}
+
+void PosedMesh::decode_all(const KeyPose& pose) const {
+  if (pose.decoded == nullptr || pose.decoded->complete) return;
+  std::vector<Vec3f>& out = pose.decoded->positions;
+  parallel_chunks(out.size(), kDecodedPerChunk, [&](std::size_t begin, std::size_t end) {
+    const VertexRange range{static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end)};
+    decode_pose(*model_, *pose.decoded->key, range, std::span(out).subspan(begin, end - begin));
+  });
+  pose.decoded->complete = true;
+}
+
+std::span<const Vec3f> PosedMesh::positions() const {
+  if (work_->complete) return positions_;
+  const Stopwatch watch;
+  decode_all(from_);
+  decode_all(to_);
+  if (is_between())
+    parallel_chunks(positions_.size(), kVerticesPerChunk, [&](std::size_t begin, std::size_t end) {
+      move_between({static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end)});
+    });
+  work_->complete = true;
+  work_->nanoseconds += static_cast<std::uint64_t>(watch.seconds() * 1e9);
+  return positions_;
+}
+
+std::size_t PosedMesh::posed_count() const {
+  if (work_->complete) return positions_.size();
+  std::size_t count = 0;
+  for (std::uint32_t c = 0; c < model_->cluster_count(); ++c)
+    if (work_->owned.is_done(c))
+      for (const VertexRange& run : vertices().owned(c)) count += run.size();
+  return count;
 }
 
 void PosedMesh::set_pose(const SkeletonPose& pose) {
@@ -68,13 +146,15 @@ void PosedMesh::set_pose(const SkeletonPose& pose) {
   if (pose.turns.size() != m.skeleton.joints.size() || pose.target_weights.size() != targets)
     throw Error(ErrorCode::kUsage, "the pose belongs to another skeleton");
   const std::vector<Affine3f> bones = bone_maps(m.skeleton, pose);
-  between_.resize(m.vertex_count);
-  parallel_chunks(between_.size(), kDecodedPerChunk, [&](std::size_t begin, std::size_t end) {
+  std::vector<Vec3f>& posed = work_->between;
+  posed.resize(m.vertex_count);
+  parallel_chunks(posed.size(), kDecodedPerChunk, [&](std::size_t begin, std::size_t end) {
     const VertexRange range{static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end)};
     pose_vertices(m.poses.rig, {bones, pose.target_weights}, range,
-                  std::span(between_).subspan(begin, end - begin));
+                  std::span(posed).subspan(begin, end - begin));
   });
-  positions_ = between_;
+  positions_ = posed;
+  work_->complete = true;
   live_clusters_.resize(m.clusters.size());
   parallel_chunks(live_clusters_.size(), 4, [&](std::size_t begin, std::size_t end) {
     for (std::size_t c = begin; c < end; ++c) {
@@ -82,7 +162,7 @@ void PosedMesh::set_pose(const SkeletonPose& pose) {
       Aabb box;
       for (const Triangle& triangle :
            m.triangles.subspan(m.clusters[c].first_triangle, m.clusters[c].triangle_count))
-        for (const std::uint32_t v : triangle.v) box.extend(between_[v]);
+        for (const std::uint32_t v : triangle.v) box.extend(posed[v]);
       live_clusters_[c] = {
           to_double(follows.local_from_base) * inverse(to_double(bones[follows.bone])),
           is_usable(box) ? box : kNowhere};

@@ -1,24 +1,31 @@
 // PosedMesh: a model's vertices and clusters at one moment, or as its skeleton is posed by hand.
+// Vertices are posed when someone asks for them, all at once or cluster by cluster: clusters that
+// no ray comes near cost nothing.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
+#include <memory>
+#include <mutex>
 #include <optional>
 #include <span>
 #include <vector>
 
+#include "common/base/once_marks.h"
+#include "common/motion/cluster_vertices.h"
 #include "common/motion/model.h"
 
 namespace mdk {
 
 /// The pose of `model` at an interval: v0 + s (v1 - v0) of two decoded key poses, in float, per
-/// coordinate. The last two key poses stay decoded, so that playing decodes each key once. Where
-/// the model holds key positions, they are used in place.
+/// coordinate; the same bits whoever asks in whatever order. What was decoded of the last two keys
+/// is kept, so that playing decodes each key once. Where the model holds key positions, they are
+/// used in place.
 class PosedMesh {
  public:
   explicit PosedMesh(const Model& model) : model_(&model) {}
 
-  /// Moves to another moment. Cost: O(vertices) between keys, and for each key that is not at hand,
-  /// decoding it. Runs in parallel.
+  /// Moves to another moment. Cost: O(clusters).
   void set_time(const KeyInterval& at);
 
   /// Poses the skeleton, until the next set_time(). Boxes hold where no joint is past its limit
@@ -31,7 +38,26 @@ class PosedMesh {
   /// The last moment; what is_live() is not at a moment.
   const KeyInterval& at() const { return at_; }
   bool is_live() const { return !live_clusters_.empty(); }
-  std::span<const Vec3f> positions() const { return positions_; }
+
+  /// All positions. Poses what is missing, in parallel; free where nothing is. Not while other
+  /// threads ask for clusters.
+  std::span<const Vec3f> positions() const;
+
+  /// Afterwards the corners of the triangles of cluster `c` stand at their numbers in
+  /// posed_so_far(). Any number of threads may ask at once; one that needs vertices another thread
+  /// is at waits for it.
+  void require(std::uint32_t c) const {
+    if (!work_->complete && !work_->ready.is_done(c)) pose_cluster(c);
+  }
+  /// The same for all triangles around the vertices of cluster `c`.
+  void require_around(std::uint32_t c) const;
+  /// Positions of what was required; the rest is of other moments, or nothing.
+  const Vec3f* posed_so_far() const { return positions_.data(); }
+
+  /// How many vertices have been posed for this moment; all of them where they are used in place.
+  std::size_t posed_count() const;
+  /// What posing has cost so far, in seconds per thread that may run.
+  double posing_seconds() const { return static_cast<double>(work_->nanoseconds) * 1e-9; }
 
   /// local_from_world of cluster `c` now.
   Affine3d cluster_map(std::uint32_t c) const;
@@ -39,24 +65,49 @@ class PosedMesh {
   Aabb cluster_box(std::uint32_t c) const;
 
  private:
+  /// A key pose, decoded where it was needed.
   struct DecodedKey {
     std::optional<std::uint32_t> key;
     std::vector<Vec3f> positions;
+    OnceMarks owned;        ///< by cluster: what it owns is decoded
+    bool complete = false;  ///< all of it is
   };
-
+  /// A key pose to take positions from: the model's own, or a decoded one.
+  struct KeyPose {
+    const Vec3f* positions = nullptr;
+    DecodedKey* decoded = nullptr;  ///< null where the positions are the model's own
+  };
   struct LiveCluster {
     Affine3d local_from_world;
     Aabb box;
   };
+  /// What posing on demand changes.
+  struct Work {
+    DecodedKey decoded[2];
+    std::vector<Vec3f> between;
+    OnceMarks owned;       ///< by cluster: what it owns is posed
+    OnceMarks ready;       ///< by cluster: the corners of its triangles are posed
+    bool complete = true;  ///< all vertices are posed
+    std::once_flag vertices_known;
+    std::optional<ClusterVertices> vertices;
+    std::atomic<std::uint64_t> nanoseconds = 0;
+  };
 
   /// The pose at a key; what `kept` names stays decoded.
-  std::span<const Vec3f> key_pose(std::uint32_t key, std::uint32_t kept);
+  KeyPose key_pose(std::uint32_t key, std::uint32_t kept);
+  const ClusterVertices& vertices() const;
+  void pose_cluster(std::uint32_t c) const;
+  void pose_owned(std::uint32_t c) const;
+  void decode_owned(const KeyPose& pose, std::uint32_t c) const;
+  void decode_all(const KeyPose& pose) const;
+  void move_between(const VertexRange& range) const;
+  bool is_between() const { return to_.positions != nullptr; }
 
   const Model* model_;
   KeyInterval at_;
   std::span<const Vec3f> positions_;
-  DecodedKey decoded_[2];
-  std::vector<Vec3f> between_;
+  KeyPose from_, to_;  ///< the keys around; `to_` only between two
+  std::unique_ptr<Work> work_ = std::make_unique<Work>();
   std::vector<LiveCluster> live_clusters_;  ///< K while posed by hand, else none
 };
 

@@ -67,7 +67,7 @@ void SeenVertices::mark(const HitBuffer& hits, std::span<const std::uint32_t> ti
   });
 }
 
-SurfaceVertex SeenVertices::make(std::uint32_t vertex, std::span<const Vec3f> positions) const {
+SurfaceVertex SeenVertices::make(std::uint32_t vertex, const Vec3f* positions) const {
   Vec3f sum;  // weighted by area: a cross product is twice its triangle's
   for (std::uint32_t i = first_corner_[vertex]; i < first_corner_[vertex + 1]; ++i) {
     const Triangle& t = model_->triangles[ring_[i]];
@@ -80,7 +80,13 @@ SurfaceVertex SeenVertices::make(std::uint32_t vertex, std::span<const Vec3f> po
 void SeenVertices::update(const PosedMesh& mesh, const HitBuffer& hits,
                           std::span<const std::uint32_t> tiles) {
   mark(hits, tiles);
-  const std::span<const Vec3f> positions = mesh.positions();
+  parallel_chunks(model_->clusters.size(), 1, [&](std::size_t c, std::size_t) {
+    const Cluster& cluster = model_->clusters[c];
+    const std::uint8_t* marks = seen_triangles_.data() + cluster.first_triangle;
+    if (std::memchr(marks, frame_, cluster.triangle_count) != nullptr)
+      mesh.require_around(static_cast<std::uint32_t>(c));
+  });
+  const Vec3f* positions = mesh.posed_so_far();
   parallel_chunks(vertices_.size(), kChunk, [&](std::size_t begin, std::size_t end) {
     const std::span marks(seen_vertices_.data() + begin, end - begin);
     for_each_marked(marks, frame_, [&](std::size_t i) {

@@ -17,7 +17,7 @@ class SeenVertices {
 
   /// The corners of all triangles in those tiles of `hits`, in the present pose. Runs in parallel.
   /// Cost: O(hits + vertices seen); hidden parts of the mesh cost a byte's look per triangle and
-  /// vertex.
+  /// vertex, and are not posed.
   void update(const PosedMesh& mesh, const HitBuffer& hits, std::span<const std::uint32_t> tiles);
 
   /// One per vertex; those of vertices that are not seen are out of date. A normal is zero where
@@ -26,7 +26,7 @@ class SeenVertices {
 
  private:
   void mark(const HitBuffer& hits, std::span<const std::uint32_t> tiles);
-  SurfaceVertex make(std::uint32_t vertex, std::span<const Vec3f> positions) const;
+  SurfaceVertex make(std::uint32_t vertex, const Vec3f* positions) const;
 
   const Model* model_;
   std::vector<std::uint32_t> first_corner_;  ///< per vertex: where its triangles begin in ring_

@@ -201,6 +201,67 @@ TEST(Agreement, BruteForceAgreesWithAnIndependentTestInDoubleButForEdges) {
   EXPECT_LE(different, 3);
 }
 
+/// How many vertices the technique had posed to show the mesh between two keys, lit or not.
+std::size_t posed_to_show(const Model& model, std::string_view id, const Camera& camera) {
+  PosedMesh mesh(model);
+  mesh.set_time({0, 1, 0.5f});
+  const std::unique_ptr<Technique> technique = find_technique(id).make(model);
+  const PinholeRays rays = make_pinhole_rays(camera, 128, 128);
+  const PixelFromWorld map = make_pixel_from_world(rays);
+  technique->prebuild(mesh);
+  technique->update(mesh);
+  technique->set_view(rays);
+  TileScratch scratch;
+  HitBuffer hits;
+  hits.resize(128, 128);
+  for (std::size_t i = 0; i < hits.tile_count(); ++i) {
+    const TileRays tile{&rays, &map, hits.tile_left(i), hits.tile_top(i)};
+    hits.set_hit(i, technique->trace(tile, hits.tile(i), scratch, nullptr));
+  }
+  return mesh.posed_count();
+}
+
+TEST(Agreement, FuzzyStructuresPoseOnlyWhatRaysComeNear) {
+  const DecomposeResult baked = bake(test::bending_tube(120, 24, 6));
+  const Model model = baked.model.view();
+  ASSERT_GT(model.cluster_count(), 3u);
+  const Camera whole = fit_camera(model.bounds, 1.0);
+  Camera away = whole, end = whole;
+  away.target = whole.eye + (whole.eye - whole.target);
+  end.target = model.cluster_world_boxes[0].center();
+  end.vertical_fov_deg = 4;
+  for (const char* id : {"fuzzy-bvh", "fuzzy-kdtree"}) {
+    EXPECT_EQ(posed_to_show(model, id, away), 0u) << id;
+    EXPECT_LT(posed_to_show(model, id, end), model.vertex_count) << id;
+    EXPECT_GT(posed_to_show(model, id, end), 0u) << id;
+    EXPECT_GT(posed_to_show(model, id, whole), model.vertex_count / 3) << id;
+  }
+  EXPECT_EQ(posed_to_show(model, "refit-bvh", away), model.vertex_count);
+}
+
+TEST(Agreement, PicturesDoNotDependOnWhatWasPosedBefore) {
+  const DecomposeResult baked = bake(test::bending_tube(120, 24, 6));
+  const Model model = baked.model.view();
+  FrameRequest close;
+  close.camera = fit_camera(model.bounds, 1.0);
+  close.width = close.height = 96;
+  close.camera.target = model.cluster_world_boxes[0].center();
+  close.camera.vertical_fov_deg = 4;
+  FrameRequest whole = close;
+  whole.camera = fit_camera(model.bounds, 1.0);
+  Renderer wandering(model, "fuzzy-bvh");
+  for (const float s : {0.25f, 0.5f})
+    for (const ShadingMode mode : {ShadingMode::kDiffuse, ShadingMode::kNormals, ShadingMode::kLit})
+      for (FrameRequest request : {close, whole, close}) {
+        request.at = {0, 1, s};
+        request.shading = mode;
+        wandering.render(request);
+        Renderer judge(model, "brute-force");
+        judge.render(request);
+        EXPECT_TRUE(std::ranges::equal(wandering.pixels(), judge.pixels()));
+      }
+}
+
 TEST(Agreement, ClosedMeshShowsNoCracks) {
   // Between the silhouette's ends of every row of pixels a convex closed body has no gap.
   PoseSequence tube = test::bending_tube(60, 48, 1);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <random>
+#include <thread>
 
 #include "tests/common/random_rig.h"
 
@@ -85,6 +86,83 @@ TEST(PosedMesh, BetweenKeysDecodedVerticesMoveLinearly) {
   mesh.set_time({1, 2, 0.25f});
   for (std::size_t i = 0; i < from.size(); ++i)
     EXPECT_EQ(mesh.positions()[i], from[i] + (to[i] - from[i]) * 0.25f);
+}
+
+/// The same in clusters of `each` triangles, which share vertices with the next.
+ModelStorage clustered(ModelStorage m, std::uint32_t each) {
+  m.triangles.clear();
+  for (std::uint32_t i = 0; i + 2 < m.vertex_count; ++i) m.triangles.push_back({{i, i + 1, i + 2}});
+  const auto count = static_cast<std::uint32_t>(m.triangles.size());
+  m.clusters.clear();
+  for (std::uint32_t first = 0; first < count; first += each)
+    m.clusters.push_back({first, std::min(each, count - first)});
+  return m;
+}
+
+TEST(PosedMesh, PosesOnlyTheClustersThatAreAskedFor) {
+  const ModelStorage rig = clustered(rigged(5000), 100), keys = clustered(two_keys(5000), 100);
+  for (const Model& model : {rig.view(), keys.view()}) {
+    const KeyInterval at{0, 1, 0.5f};
+    PosedMesh whole(model), part(model);
+    whole.set_time(at);
+    part.set_time(at);
+    EXPECT_EQ(part.posed_count(), 0u);
+    part.require(7);
+    EXPECT_GE(part.posed_count(), 102u);
+    EXPECT_LE(part.posed_count(), 204u) << "the cluster, and the one that owns its first vertices";
+    for (std::uint32_t v = 700; v < 802; ++v)
+      ASSERT_EQ(part.posed_so_far()[v], whole.positions()[v]);
+    part.require_around(7);
+    for (std::uint32_t v = 600; v < 902; ++v)
+      ASSERT_EQ(part.posed_so_far()[v], whole.positions()[v]);
+    EXPECT_LT(part.posed_count(), 500u);
+    EXPECT_TRUE(std::ranges::equal(part.positions(), whole.positions()));
+    EXPECT_EQ(part.posed_count(), 5000u);
+  }
+}
+
+TEST(PosedMesh, WhatWasDecodedInPartIsCompletedAtOtherMoments) {
+  const ModelStorage storage = clustered(rigged(3000), 50);
+  const Model model = storage.view();
+  PosedMesh wandering(model);
+  std::mt19937 random(11);
+  const KeyInterval moments[] = {at_key(1), {1, 2, 0.5f}, {1, 2, 0.75f}, at_key(2), {2, 3, 0.25f}};
+  for (int round = 0; round < 60; ++round) {
+    const KeyInterval& at = moments[random() % std::size(moments)];
+    PosedMesh fresh(model);
+    fresh.set_time(at);
+    wandering.set_time(at);
+    if (random() % 4 == 0) wandering.positions();
+    for (int i = 0; i < 3; ++i) {
+      const auto c = static_cast<std::uint32_t>(random() % model.cluster_count());
+      wandering.require(c);
+      for (const Triangle& t : model.triangles.subspan(model.clusters[c].first_triangle,
+                                                       model.clusters[c].triangle_count))
+        for (const std::uint32_t v : t.v)
+          ASSERT_EQ(wandering.posed_so_far()[v], fresh.positions()[v]) << round;
+    }
+  }
+}
+
+TEST(PosedMesh, ManyThreadsMayAskForTheSameClusters) {
+  const ModelStorage storage = clustered(rigged(20000), 300);
+  const Model model = storage.view();
+  PosedMesh asked(model), whole(model);
+  for (int round = 0; round < 20; ++round) {
+    const KeyInterval at{0, 1, 0.02f + 0.04f * static_cast<float>(round)};
+    whole.set_time(at);
+    asked.set_time(at);
+    const auto ask = [&](std::uint32_t step) {
+      for (std::uint32_t i = 0; i < model.cluster_count(); ++i)
+        asked.require(i * step % model.cluster_count());
+    };
+    std::thread other(ask, 1), third(ask, 5);
+    ask(1);
+    other.join();
+    third.join();
+    for (std::uint32_t v = 0; v < model.vertex_count; ++v)
+      ASSERT_EQ(asked.posed_so_far()[v], whole.positions()[v]);
+  }
 }
 
 TEST(PosedMesh, AnyRangeOfVerticesDecodesToTheSameBits) {

@@ -134,23 +134,24 @@ void kd(const TileRays& tile, const KdView& tree, const TriangleSoup& soup,
 }
 
 template <class Counter>
-void two_level_kd(const TileRays& tile, const KdView& top, std::span<const KdView> clusters,
-                  const TriangleSoup& soup, BlockTester<Counter>& tester, TileScratch& scratch) {
-  scratch.begin_tile(soup.triangle_count, clusters.size());
+void two_level_kd(const TileRays& tile, const TopLevelKdView& top, const TriangleSoup& soup,
+                  BlockTester<Counter>& tester, TileScratch& scratch) {
+  scratch.begin_tile(soup.triangle_count, top.clusters.size());
   Mailbox seen_triangles(scratch.triangle_stamps, scratch.serial);
   Mailbox seen_clusters(scratch.cluster_stamps, scratch.serial);
   TriangleBatch<Counter> batch(tester, soup.triangles, scratch.block);
   const auto enter = [&](std::uint32_t c) {
     if (!seen_clusters.is_new(c)) return;
-    const KdView& cluster = clusters[c];
+    const KdView& cluster = top.clusters[c];
     const TileFrustum local(cluster.forms, tile);
     if (local.misses(local.cell_of(cluster.tree.bounds, 0), tester.image().farthest())) return;
     tester.counter().clusters(1);
+    top.mesh.require(c);
     walk_kd(cluster.tree, local, tester, [&](std::uint32_t triangle) {
       if (seen_triangles.is_new(triangle)) batch.push(triangle);
     });
   };
-  walk_kd(top.tree, TileFrustum(top.forms, tile), tester, enter);
+  walk_kd(top.tree.tree, TileFrustum(top.tree.forms, tile), tester, enter);
   batch.flush();
 }
 
@@ -177,7 +178,9 @@ void two_level_bvh(const TileRays& tile, const TopLevelView& top, const BlockSou
                    BlockTester<Counter>& tester, TileScratch& scratch) {
   walk_bvh(top.tree.nodes, TileFrustum(top.tree.forms, tile), tester, [&](std::uint32_t leaf) {
     tester.counter().clusters(1);
-    bvh(tile, top.clusters[top.cluster_of_leaf[leaf]], soup, tester, scratch);
+    const std::uint32_t c = top.cluster_of_leaf[leaf];
+    top.mesh.require(c);
+    bvh(tile, top.clusters[c], soup, tester, scratch);
   });
 }
 
@@ -205,12 +208,10 @@ bool Kd(const TileRays& tile, const KdView& tree, const TriangleSoup& soup, Tile
   return with_tester(tile, soup.positions, hits, counters,
                      [&](auto& tester) { kd(tile, tree, soup, tester, scratch); });
 }
-bool TwoLevelKd(const TileRays& tile, const KdView& top, std::span<const KdView> clusters,
-                const TriangleSoup& soup, TileHits& hits, TileScratch& scratch,
-                TraceCounters* counters) {
-  return with_tester(tile, soup.positions, hits, counters, [&](auto& tester) {
-    two_level_kd(tile, top, clusters, soup, tester, scratch);
-  });
+bool TwoLevelKd(const TileRays& tile, const TopLevelKdView& top, const TriangleSoup& soup,
+                TileHits& hits, TileScratch& scratch, TraceCounters* counters) {
+  return with_tester(tile, soup.positions, hits, counters,
+                     [&](auto& tester) { two_level_kd(tile, top, soup, tester, scratch); });
 }
 bool OneLevelBvh(const TileRays& tile, const BvhView& tree, const BlockSoup& soup, TileHits& hits,
                  TileScratch& scratch, TraceCounters* counters) {
@@ -244,10 +245,10 @@ bool trace_tile_kd(const TileRays& tile, const KdView& tree, const TriangleSoup&
                    TileHits& hits, TileScratch& scratch, TraceCounters* counters) {
   return HWY_DYNAMIC_DISPATCH(Kd)(tile, tree, soup, hits, scratch, counters);
 }
-bool trace_tile_two_level_kd(const TileRays& tile, const KdView& top,
-                             std::span<const KdView> clusters, const TriangleSoup& soup,
-                             TileHits& hits, TileScratch& scratch, TraceCounters* counters) {
-  return HWY_DYNAMIC_DISPATCH(TwoLevelKd)(tile, top, clusters, soup, hits, scratch, counters);
+bool trace_tile_two_level_kd(const TileRays& tile, const TopLevelKdView& top,
+                             const TriangleSoup& soup, TileHits& hits, TileScratch& scratch,
+                             TraceCounters* counters) {
+  return HWY_DYNAMIC_DISPATCH(TwoLevelKd)(tile, top, soup, hits, scratch, counters);
 }
 bool trace_tile_bvh(const TileRays& tile, const BvhView& tree, const BlockSoup& soup,
                     TileHits& hits, TileScratch& scratch, TraceCounters* counters) {

@@ -8,7 +8,7 @@
 
 #include "common/math/aabb.h"
 #include "common/math/affine3.h"
-#include "common/motion/model.h"
+#include "common/motion/posed_mesh.h"
 #include "common/structures/kd_tree.h"
 #include "common/structures/wide_bvh.h"
 #include "common/trace/camera.h"
@@ -77,6 +77,14 @@ struct TopLevelView {
   const BvhView& tree;
   std::span<const std::uint32_t> cluster_of_leaf;
   std::span<const BvhView> clusters;
+  const PosedMesh& mesh;  ///< clusters are posed when a tile first enters them
+};
+
+/// A kd-tree over clusters.
+struct TopLevelKdView {
+  const KdView& tree;
+  std::span<const KdView> clusters;
+  const PosedMesh& mesh;  ///< as above
 };
 
 /// Each returns whether a ray hits; `hits` is written whole then, and else left alone.
@@ -84,9 +92,9 @@ bool trace_tile_brute_force(const TileRays& tile, const TriangleSoup& soup, Tile
                             TileScratch& scratch, TraceCounters* counters);
 bool trace_tile_kd(const TileRays& tile, const KdView& tree, const TriangleSoup& soup,
                    TileHits& hits, TileScratch& scratch, TraceCounters* counters);
-bool trace_tile_two_level_kd(const TileRays& tile, const KdView& top,
-                             std::span<const KdView> clusters, const TriangleSoup& soup,
-                             TileHits& hits, TileScratch& scratch, TraceCounters* counters);
+bool trace_tile_two_level_kd(const TileRays& tile, const TopLevelKdView& top,
+                             const TriangleSoup& soup, TileHits& hits, TileScratch& scratch,
+                             TraceCounters* counters);
 bool trace_tile_bvh(const TileRays& tile, const BvhView& tree, const BlockSoup& soup,
                     TileHits& hits, TileScratch& scratch, TraceCounters* counters);
 bool trace_tile_two_level_bvh(const TileRays& tile, const TopLevelView& top, const BlockSoup& soup,

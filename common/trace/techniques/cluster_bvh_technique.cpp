@@ -3,7 +3,7 @@
 namespace mdk {
 
 void ClusterBvhTechnique::update(const PosedMesh& mesh) {
-  positions_ = mesh.positions().data();
+  mesh_ = &mesh;
   present_ = &follow(mesh);
   for (std::uint32_t c = 0; c < world_boxes_.size(); ++c) {
     world_boxes_[c] = mesh.cluster_box(c);
@@ -28,11 +28,13 @@ void ClusterBvhTechnique::set_view(const PinholeRays& rays) {
 bool ClusterBvhTechnique::trace(const TileRays& tile, TileHits& hits, TileScratch& scratch,
                                 TraceCounters* counters) const {
   return trace_tile_two_level_bvh(
-      tile, {top_view_, top_.box_of_leaf, views_},
-      {present_->blocks, positions_, cache_.usable() ? &cache_ : nullptr}, hits, scratch, counters);
+      tile, {top_view_, top_.box_of_leaf, views_, *mesh_},
+      {present_->blocks, mesh_->posed_so_far(), cache_.usable() ? &cache_ : nullptr}, hits, scratch,
+      counters);
 }
 
 void ClusterBvhTechnique::prepare_occlusion() {
+  mesh_->positions();  // beams come everywhere
   const std::size_t count = views_.size();
   beam_spaces_.resize(count + 1);
   beam_clusters_.resize(count);
@@ -50,7 +52,7 @@ void ClusterBvhTechnique::prepare_occlusion() {
 void ClusterBvhTechnique::occlude(RayBeam& beam, TileScratch&) const {
   const BeamBvh top{top_.nodes, 0, &beam_spaces_.back()};
   occlude_beam_two_level_bvh({top, top_.box_of_leaf, beam_clusters_},
-                             {present_->blocks, positions_, &posed_blocks_}, beam);
+                             {present_->blocks, mesh_->posed_so_far(), &posed_blocks_}, beam);
 }
 
 std::size_t ClusterBvhTechnique::structure_bytes() const {

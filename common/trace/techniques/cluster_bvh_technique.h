@@ -46,7 +46,7 @@ class ClusterBvhTechnique : public Technique {
   std::vector<BeamSpace> beam_spaces_;  ///< by cluster, then the world's
   std::vector<BeamBvh> beam_clusters_;  ///< by cluster
   mutable PosedBlockCache posed_blocks_;
-  const Vec3f* positions_ = nullptr;
+  const PosedMesh* mesh_ = nullptr;
   mutable ProjectionCache cache_;
 };
 

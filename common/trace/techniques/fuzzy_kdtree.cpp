@@ -19,7 +19,7 @@ class FuzzyKdTechnique final : public Technique {
         clusters_(model.cluster_count()) {}
 
   void update(const PosedMesh& mesh) override {
-    soup_ = soup_of(mesh);
+    mesh_ = &mesh;
     for (std::uint32_t c = 0; c < world_boxes_.size(); ++c) {
       world_boxes_[c] = mesh.cluster_box(c);
       maps_[c] = mesh.cluster_map(c);
@@ -39,10 +39,12 @@ class FuzzyKdTechnique final : public Technique {
 
   bool trace(const TileRays& tile, TileHits& hits, TileScratch& scratch,
              TraceCounters* counters) const override {
-    return trace_tile_two_level_kd(tile, top_view_, clusters_, soup_, hits, scratch, counters);
+    return trace_tile_two_level_kd(tile, {top_view_, clusters_, *mesh_}, soup(), hits, scratch,
+                                   counters);
   }
 
   void prepare_occlusion() override {
+    mesh_->positions();  // beams come everywhere
     const std::size_t count = clusters_.size();
     beam_spaces_.resize(count + 1);
     beam_clusters_.resize(count);
@@ -54,7 +56,7 @@ class FuzzyKdTechnique final : public Technique {
   }
 
   void occlude(RayBeam& beam, TileScratch& scratch) const override {
-    occlude_beam_two_level_kd({top_.view(), &beam_spaces_.back()}, beam_clusters_, soup_, beam,
+    occlude_beam_two_level_kd({top_.view(), &beam_spaces_.back()}, beam_clusters_, soup(), beam,
                               scratch);
   }
 
@@ -65,8 +67,12 @@ class FuzzyKdTechnique final : public Technique {
   }
 
  private:
+  TriangleSoup soup() const {
+    return {model_.triangles.data(), mesh_->posed_so_far(), model_.triangle_count()};
+  }
+
   const Model& model_;
-  TriangleSoup soup_{};
+  const PosedMesh* mesh_ = nullptr;
   std::vector<Aabb> world_boxes_;
   std::vector<Affine3d> maps_;
   KdTree top_;

@@ -77,8 +77,9 @@ class TechniqueChooser final : public Technique {
   std::vector<std::unique_ptr<Technique>> techniques_;  ///< made when first needed
   std::vector<View> views_;                             ///< the present one last
   std::size_t serving_ = 0;                             ///< the present frame
-  bool is_first_frame_ = true;  ///< of the view: what it costs is not typical
-  bool is_warming_up_ = false;  ///< the first frame of a trial
+  bool is_first_frame_ = true;       ///< of the view: what it costs is not typical
+  bool is_warming_up_ = false;       ///< the first frame of a trial
+  const PosedMesh* mesh_ = nullptr;  ///< of the present frame
   double update_ms_ = 0;
   mutable std::vector<float> tile_ms_;          ///< of the timed tiles of the present frame
   mutable std::atomic<std::size_t> timed_ = 0;  ///< tiles
