@@ -10,6 +10,10 @@ make_source() {
   local name=$1 made=()
   case $name in
     hand | ball | cally-* | skeleton-* | paladin-*) return ;;
+    palm)
+      make_source hand-split2
+      return
+      ;;
     *-split[1-6]) made=("$samples/$name.glb") ;;
     ben) made=("$samples/$name.glb") ;;
     *) made=("$samples/$name.obj" "$samples/$name.pc2") ;;
@@ -24,6 +28,10 @@ make_source() {
   fi
 }
 
+# camera_of NAME: where models are not seen whole. "palm" is hand-split2 from near: half of it is outside
+# the picture.
+camera_of() { if [[ $1 == palm ]]; then echo "0.02 0.06 0.30 0.005 0.045 0 0 1 0 12"; fi; }
+
 # source_of NAME: what 'mdprep bake' takes for it. Three clips of a character by others stand for the
 # thesis's animations where MDK_TEST_DATA has them.
 source_of() {
@@ -31,6 +39,7 @@ source_of() {
     hand) echo assets/hand.glb --clips beckon ;;
     ball) echo assets/ball.glb --clips throw ;;
     hand-split*) echo "$samples/$1.glb" --clips beckon ;;
+    palm) source_of hand-split2 ;;
     ben | *-split*) echo "$samples/$1.glb" ;;
     cally-walking) echo "${MDK_TEST_DATA:-}/cal3d/cally.glb" --clips walk ;;
     cally-freestyle) echo "${MDK_TEST_DATA:-}/cal3d/cally.glb" --clips tornado_kick ;;
@@ -54,7 +63,7 @@ triangles_of() { "$mdprep" info "$1" --json | grep -o '"triangles": *[0-9]*' | h
 # measure_model FILE.mdk RESULT.json OPTIONS…: what the options leave open is chosen by the number of
 # triangles: fewer frames for larger models, and not what would take minutes to build.
 measure_model() {
-  local file=$1 result=$2 triangles frames judge=1 techniques=all given
+  local file=$1 result=$2 triangles frames judge=1 techniques=all given camera
   shift 2
   given=" $* "
   triangles=$(triangles_of "$file")
@@ -70,6 +79,8 @@ measure_model() {
   if [[ $techniques != all && $("$mdprep" bench --help) == *embree-medium* ]]; then
     techniques+=,-embree-medium
   fi
+  camera=$(camera_of "$(basename "$file" .mdk)")
+  if [[ $camera ]]; then set -- "$@" --camera "$camera"; fi
   [[ $given == *' --frames '* ]] || set -- "$@" --frames "$frames"
   [[ $given == *' --judge '* ]] || set -- "$@" --judge "$judge"
   [[ $given == *' --techniques '* ]] || set -- "$@" --techniques "$techniques"

@@ -41,7 +41,7 @@ while (($#)); do
   shift
 done
 
-models=(hand ball chicken cow dolphin cloth ben hand-split1 hand-split2 hand-split3)
+models=(hand ball chicken cow dolphin cloth ben hand-split1 hand-split2 palm hand-split3 ben-split2)
 setting=(--size 1024x1024)
 if [[ -n ${MDK_TEST_DATA:-} ]]; then
   models+=(cally-walking cally-freestyle skeleton-freestyle paladin-jogging)
@@ -56,15 +56,19 @@ few=fuzzy-bvh,fuzzy-kdtree,refit-bvh,rebuild-bvh
 if [[ $("$mdprep" bench --help) == *embree-low* ]]; then few+=,embree,embree-refit,embree-low; fi
 further=(cow ball hand hand-split1 ben hand-split2 hand-split3)
 further_options=(--techniques "$few" --judge none)
+lit=(ball hand chicken cow dolphin ben hand-split2)
+lit_options=(--techniques "${few/fuzzy-kdtree,/}" --judge none --shading lit --ao 16 --frames 3)
 if [[ -n ${MDK_TEST_DATA:-} ]]; then further=(cally-walking "${further[@]}"); fi
 if [[ $quick ]]; then
   further=(hand hand-split1)
+  lit=(hand)
   further_options=(--techniques "$few")
 fi
 
 if [[ $only ]]; then
   IFS=, read -ra models <<<"$only"
   further=("${models[@]}")
+  lit=("${models[@]}")
 fi
 
 work=build/results/$(sha256sum "$mdprep" | cut -c1-12)$quick
@@ -84,6 +88,7 @@ bake_all() {
 # none, since results appear whole or not at all.
 measure() {
   local isa=$1 threads=$2 name=$3 result=$work/$3.$1.$2.json
+  if [[ " $* " == *' --shading lit '* ]]; then result=$work/$3.$1.$2.lit.json; fi
   shift 3
   if [[ ! -f $result ]]; then
     say "measure $name, $isa, $threads thread(s)"
@@ -104,6 +109,7 @@ measure_all() {
     if [[ $isa == "$best" ]]; then continue; fi
     for name in "${further[@]}"; do measure "$isa" 1 "$name" "${further_options[@]}"; done
   done
+  for name in "${lit[@]}"; do measure "$best" 1 "$name" "${lit_options[@]}"; done
   if (($(nproc) > 1)); then
     for name in "${further[@]}"; do measure "$best" 2 "$name" "${further_options[@]}"; done
   fi
