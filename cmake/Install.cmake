@@ -9,18 +9,22 @@ if(MDK_BUILD_VIEWER)
   set(MDK_VIEWER_PAGES ${PROJECT_SOURCE_DIR}/docs/man/mdview.1)
 endif()
 
-# gzip -n leaves name and time out: the same page gives the same bytes.
+# mdk_install_compressed(COMPONENT FOLDER PATTERN...): files as FOLDER/NAME.gz. gzip -n leaves name and
+# time out: the same page gives the same bytes.
 find_program(GZIP_PROGRAM gzip REQUIRED)
-install(CODE "
-  file(GLOB pages ${MDK_MANUAL_DIR}/*.1 ${MDK_VIEWER_PAGES})
-  set(folder \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_MANDIR}/man1\")
-  foreach(page IN LISTS pages)
-    get_filename_component(name \${page} NAME)
-    message(STATUS \"Installing: \${folder}/\${name}.gz\")
-    file(MAKE_DIRECTORY \"\${folder}\")
-    execute_process(COMMAND ${GZIP_PROGRAM} -9nc \"\${page}\" OUTPUT_FILE \"\${folder}/\${name}.gz\"
-      COMMAND_ERROR_IS_FATAL ANY)
-  endforeach()" COMPONENT tools)
+function(mdk_install_compressed component folder)
+  install(CODE "
+    file(GLOB files ${ARGN})
+    set(folder \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${folder}\")
+    foreach(file IN LISTS files)
+      get_filename_component(name \${file} NAME)
+      message(STATUS \"Installing: \${folder}/\${name}.gz\")
+      file(MAKE_DIRECTORY \"\${folder}\")
+      execute_process(COMMAND ${GZIP_PROGRAM} -9nc \"\${file}\" OUTPUT_FILE \"\${folder}/\${name}.gz\"
+        COMMAND_ERROR_IS_FATAL ANY)
+    endforeach()" COMPONENT ${component})
+endfunction()
+mdk_install_compressed(tools ${CMAKE_INSTALL_MANDIR}/man1 ${MDK_MANUAL_DIR}/*.1 ${MDK_VIEWER_PAGES})
 install(FILES ${MDK_MANUAL_DIR}/mdprep.bash RENAME mdprep COMPONENT tools
   DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
 

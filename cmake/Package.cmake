@@ -1,7 +1,8 @@
 # cpack -G DEB: mdk-tools with the programs, libmdk-dev with the library.
 set(CPACK_PACKAGE_NAME mdk)
 set(CPACK_PACKAGE_VENDOR "The mdk authors")
-set(CPACK_PACKAGE_CONTACT "The mdk authors <mdk@localhost>")
+set(CPACK_PACKAGE_CONTACT "The mdk authors <mdk@localhost>" CACHE STRING
+  "Who answers for a package: name and address")
 set(CPACK_DEBIAN_PACKAGE_MAINTAINER ${CPACK_PACKAGE_CONTACT})
 set(CPACK_COMPONENTS_ALL tools dev)
 set(CPACK_DEB_COMPONENT_INSTALL ON)
@@ -31,10 +32,13 @@ set(CPACK_DEBIAN_DEV_DESCRIPTION "library to trace rays against animated meshes 
  each with its own time if wanted, from many threads.")
 
 # What every Debian package has in its documentation folder.
+configure_file(docs/packaging/changelog.in packaging/changelog @ONLY)
 set(MDK_PACKAGE_NAMES mdk-tools libmdk-dev)
 foreach(component package IN ZIP_LISTS CPACK_COMPONENTS_ALL MDK_PACKAGE_NAMES)
   install(FILES docs/packaging/copyright COMPONENT ${component}
     DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${package})
+  mdk_install_compressed(${component} ${CMAKE_INSTALL_DATADIR}/doc/${package}
+    ${PROJECT_BINARY_DIR}/packaging/changelog)
 endforeach()
 
 include(CPack)

@@ -19,10 +19,12 @@ make_source() {
     *) made=("$samples/$name.obj" "$samples/$name.pc2") ;;
   esac
   [[ -f ${made[0]} && -f ${made[-1]} && ! build/release/bin/make_sample -nt ${made[-1]} ]] && return
-  mkdir -p "$samples/split"
+  mkdir -p "$samples"
   if [[ $name == *-split* ]]; then
-    build/release/bin/make_sample "${name%-split*}" "$samples/split" "${name##*-split}" >/dev/null
-    mv "$samples/split/${name%-split*}.glb" "${made[0]}"
+    mkdir -p "$samples/$name"
+    build/release/bin/make_sample "${name%-split*}" "$samples/$name" "${name##*-split}" >/dev/null
+    mv "$samples/$name/${name%-split*}.glb" "${made[0]}"
+    rmdir "$samples/$name"
   else
     build/release/bin/make_sample "$name" "$samples" >/dev/null
   fi
@@ -31,6 +33,16 @@ make_source() {
 # camera_of NAME: where models are not seen whole. "palm" is hand-split2 from near: half of it is outside
 # the picture.
 camera_of() { if [[ $1 == palm ]]; then echo "0.02 0.06 0.30 0.005 0.045 0 0 1 0 12"; fi; }
+
+# make_sources NAME…: all of them at one time, since each keeps one core busy.
+make_sources() {
+  local name maker makers=()
+  for name; do
+    make_source "$name" &
+    makers+=($!)
+  done
+  for maker in "${makers[@]}"; do wait "$maker"; done
+}
 
 # source_of NAME: what 'mdprep bake' takes for it. Three clips of a character by others stand for the
 # thesis's animations where MDK_TEST_DATA has them.

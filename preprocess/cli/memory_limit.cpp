@@ -5,14 +5,20 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
+#include <chrono>
 #include <fstream>
+#include <thread>
 
 #include "common/base/error.h"
+#include "common/base/parallel.h"
 #include "preprocess/cli/number_text.h"
 
 namespace mdk {
 namespace {
 
+/// What oneTBB reserves for the stack of a thread; next to nothing of it is ever touched.
+constexpr std::uint64_t kStackBytes = std::uint64_t{4} << 20;
 constexpr std::uint64_t kLeastRoom = std::uint64_t{16}
                                      << 20;  // to start threads and say a sentence
 
@@ -24,6 +30,19 @@ std::uint64_t program_bytes() {
   return shared * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
 }
 
+/// Starts the threads of parallel loops: oneTBB brings the program down where it cannot do so
+/// later.
+void start_threads() {
+  const auto threads = static_cast<std::size_t>(thread_count());
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::milliseconds(200);
+  std::atomic<std::size_t> running = 0;
+  parallel_chunks(threads, 1, [&](std::size_t, std::size_t) {
+    ++running;
+    while (running < threads && std::chrono::steady_clock::now() < deadline)
+      std::this_thread::yield();
+  });
+}
+
 }  // namespace
 
 MemoryLimit::MemoryLimit(const std::string& text) {
@@ -33,8 +52,11 @@ MemoryLimit::MemoryLimit(const std::string& text) {
   if (bytes_ < program + kLeastRoom)
     throw Error(ErrorCode::kOverLimit, "--memory-limit " + text + ": the program itself needs " +
                                            bytes_text(program + kLeastRoom) + "; allow more");
+  start_threads();
+  const std::uint64_t stacks = static_cast<std::uint64_t>(thread_count() - 1) * kStackBytes;
   getrlimit(RLIMIT_DATA, &before_);
-  const rlimit limit{std::min<rlim_t>(bytes_ - program, before_.rlim_max), before_.rlim_max};
+  const rlimit limit{std::min<rlim_t>(bytes_ - program + stacks, before_.rlim_max),
+                     before_.rlim_max};
   setrlimit(RLIMIT_DATA, &limit);
 }
 

@@ -4,10 +4,12 @@
 #include <algorithm>
 #include <csignal>
 #include <fstream>
+#include <nlohmann/json.hpp>
 
 #include "common/trace/technique.h"
 #include "tests/cli/baked_sample.h"
 #include "tests/cli/program_run.h"
+#include "tests/cli/sample_mesh.h"
 
 namespace mdk::test {
 namespace {
@@ -187,6 +189,24 @@ TEST_F(CommandLine, TooLittleMemoryIsStatus5) {
                  5);
   EXPECT_EQ(folder_.names(), std::vector<std::string>{});
   EXPECT_EQ(run_mdprep({"bake", source(), "-o", out("x.mdk"), "--memory-limit", "1G"}).status, 0);
+}
+
+TEST_F(CommandLine, AnyMemoryLimitIsKeptOrSaidToBeTooLow) {
+  write_sample_gltf(out("large.gltf"), {200, 64});
+  int done = 0, refused = 0;
+  for (int megabytes = 20; megabytes <= 100; megabytes += 10) {
+    const std::uint64_t bytes = static_cast<std::uint64_t>(megabytes) << 20;
+    const Outcome run =
+        run_mdprep({"bake", out("large.gltf"), "-o", out("x.mdk"), "--threads", "4", "--refine",
+                    "off", "--memory-limit", std::to_string(bytes), "--report", out("x.json")});
+    EXPECT_THAT(run.status, testing::AnyOf(0, 5)) << megabytes << " MiB: " << run.err;
+    (run.status == 0 ? done : refused) += 1;
+    if (run.status != 0) continue;
+    const auto report = nlohmann::json::parse(read_text(out("x.json")));
+    EXPECT_LE(report["peak_memory_bytes"].get<std::uint64_t>(), bytes);
+  }
+  EXPECT_GT(done, 0);
+  EXPECT_GT(refused, 0);
 }
 
 TEST_F(CommandLine, APictureTooLargeIsStatus5) {
