@@ -17,21 +17,23 @@
 namespace mdk {
 namespace {
 
-/// What oneTBB reserves for the stack of a thread; next to nothing of it is ever touched.
-constexpr std::uint64_t kStackBytes = std::uint64_t{4} << 20;
 constexpr std::uint64_t kLeastRoom = std::uint64_t{16}
                                      << 20;  // to start threads and say a sentence
 
-/// Resident pages that files stand behind.
-std::uint64_t program_bytes() {
+struct ProcessMemory {
+  std::uint64_t program = 0;  ///< bytes: resident pages that files stand behind
+  std::uint64_t data = 0;     ///< bytes that RLIMIT_DATA counts, touched or not
+};
+
+ProcessMemory process_memory() {
   std::ifstream statm("/proc/self/statm");
-  std::uint64_t size = 0, resident = 0, shared = 0;
-  if (!(statm >> size >> resident >> shared)) return 0;
-  return shared * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
+  std::uint64_t size = 0, resident = 0, shared = 0, text = 0, library = 0, data = 0;
+  if (!(statm >> size >> resident >> shared >> text >> library >> data)) return {};
+  const auto page = static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
+  return {shared * page, data * page};
 }
 
-/// Starts the threads of parallel loops: oneTBB brings the program down where it cannot do so
-/// later.
+/// Starts the threads of parallel loops: where oneTBB cannot do so later, the program goes down.
 void start_threads() {
   const auto threads = static_cast<std::size_t>(thread_count());
   const auto deadline = std::chrono::steady_clock::now() + std::chrono::milliseconds(200);
@@ -48,12 +50,13 @@ void start_threads() {
 MemoryLimit::MemoryLimit(const std::string& text) {
   if (text == "none") return;
   bytes_ = parse_size("--memory-limit", text);
-  const std::uint64_t program = program_bytes();
+  const auto [program, data] = process_memory();
   if (bytes_ < program + kLeastRoom)
     throw Error(ErrorCode::kOverLimit, "--memory-limit " + text + ": the program itself needs " +
                                            bytes_text(program + kLeastRoom) + "; allow more");
   start_threads();
-  const std::uint64_t stacks = static_cast<std::uint64_t>(thread_count() - 1) * kStackBytes;
+  const std::uint64_t started = std::max(data, process_memory().data);
+  const std::uint64_t stacks = started - data;  // hardly any of which is ever touched
   getrlimit(RLIMIT_DATA, &before_);
   const rlimit limit{std::min<rlim_t>(bytes_ - program + stacks, before_.rlim_max),
                      before_.rlim_max};
