@@ -134,29 +134,6 @@ TEST(Agreement, HitsAndCountsDoNotDependOnInstructionSetOrThreads) {
   }
 }
 
-TEST(Agreement, PeersSeeTheSameDepthsButForSinglePixelsOnEdges) {
-  const ResetIsa reset;
-  const DecomposeResult baked = bake(test::bending_tube(40, 24, 12));
-  const Model model = baked.model.view();
-  Renderer oracle(model, "brute-force");
-  for (const TechniqueInfo& technique : technique_table()) {
-    if (technique.kind != TechniqueKind::kPeer) continue;
-    for (const std::string_view isa : available_isas()) {
-      limit_isa(isa);
-      Renderer peer(model, technique.id);
-      std::uint64_t hits = 0, mismatches = 0;
-      for (const KeyInterval& at : moments_of(model)) {
-        const FrameRequest request{
-            .at = at, .camera = fit_camera(model.bounds, 1.5), .width = 300, .height = 200};
-        hits += oracle.trace(request).hits;
-        peer.trace(request);
-        mismatches += count_mismatches(peer.hits(), oracle.hits(), technique.agreement());
-      }
-      EXPECT_LE(mismatches, hits / 2000) << technique.id << " " << isa;
-    }
-  }
-}
-
 /// Möller and Trumbore's test in double: another formula, another precision, no tiles.
 bool hit_in_double(const Vec3d& origin, const Vec3d& d, const Vec3d (&v)[3], double& t) {
   const Vec3d e1 = v[1] - v[0], e2 = v[2] - v[0], p = cross(d, e2);
