@@ -10,7 +10,9 @@
 
 #include "common/trace/technique.h"
 #include "formats/image_writer.h"
+#include "viewer/panel/comparison_view.h"
 #include "viewer/panel/overlays.h"
+#include "viewer/panel/picture_lines.h"
 #include "viewer/panel/pose_panel.h"
 #include "viewer/panel/time_line.h"
 #include "viewer/picture/picture_job.h"
@@ -42,6 +44,9 @@ App::App(const ViewerOptions& options)
   state_.settings.samples = options_.samples;
   state_.settings.occlusion_rays = options_.occlusion_rays;
   state_.tab = options_.tab;
+  state_.compare.mode = options_.compare;
+  state_.compare.against =
+      options_.against.empty() ? default_against() : technique_row(options_.against);
   if (!options_.file.empty()) loader_.load({options_.file});
 }
 
@@ -59,7 +64,9 @@ void App::show_loaded_scene() {
   state_.file_name = std::filesystem::path(scene->path).filename().string();
   state_.forget_frames();
   state_.error.clear();
-  shown_ = {};
+  shown_.clear();
+  state_.clusters = ClusterView(state_.file->model());
+  state_.picked.reset();
   full_picture_ms_ = 0;
   window_.set_title(state_.file_name + " - mdview");
   if (scene->is_again) {
@@ -149,20 +156,22 @@ void App::show_finished_frame() {
     show_error(Error(ErrorCode::kInternal, frame->error));
     return;
   }
-  blit_.upload(frame->pixels, job.request.width, job.request.height);
-  shown_ = {job.request.width, job.request.height, std::move(frame->pixels)};
-  if (job.request.counting == Counting::kOn) {
-    state_.note_work({job.technique, frame->stats.rays, frame->stats.counters});
-    return;
+  if (note_costs(*frame, state_)) {
+    const double ms = frame->stats.time_to_image_ms() +
+                      (frame->second ? frame->second->stats.time_to_image_ms() : 0);
+    const PixelRect full = picture_pixels();
+    full_picture_ms_ = ms * (static_cast<double>(full.width) * full.height) /
+                       (static_cast<double>(job.request.width) * job.request.height);
+    shown_times_.push_back(clock_.seconds());
+    ++frames_shown_;
   }
-  const double ms = frame->stats.time_to_image_ms();
-  state_.note_frame({job.technique, job.request.width, job.request.height, frame->stats,
-                     frame->structure_bytes, frame->note, frame->heat});
-  const PixelRect full = picture_pixels();
-  full_picture_ms_ = ms * (static_cast<double>(full.width) * full.height) /
-                     (static_cast<double>(job.request.width) * job.request.height);
-  shown_times_.push_back(clock_.seconds());
-  ++frames_shown_;
+  shown_.show(std::move(*frame), state_.compare);
+  upload_picture();
+}
+
+void App::upload_picture() {
+  const Picture& picture = shown_.picture();
+  blit_.upload(picture.pixels, picture.width, picture.height);
 }
 
 void App::update_shown_rate() {
@@ -180,7 +189,8 @@ void App::expire_notice() {
 }
 
 RenderJob App::wanted_job() const {
-  const PixelRect room = picture_pixels();
+  PixelRect room = picture_pixels();
+  if (state_.compare.mode == CompareMode::kSideBySide) room.width /= 2;
   const std::uint32_t divisor =
       picture_divisor(state_.settings.resolution, motion_, full_picture_ms_);
   return picture_job(state_, std::max(1u, static_cast<std::uint32_t>(room.width) / divisor),
@@ -227,7 +237,8 @@ PixelRect App::picture_pixels() const {
 
 double App::picture_aspect() const {
   const PixelRect pixels = picture_pixels();
-  return static_cast<double>(pixels.width) / pixels.height;
+  const int pictures = state_.compare.mode == CompareMode::kSideBySide ? 2 : 1;
+  return static_cast<double>(pixels.width) / pictures / pixels.height;
 }
 
 double App::seconds_to_wait() const {
@@ -249,6 +260,7 @@ void App::draw() {
   redraws_ = std::max(0, redraws_ - 1);
   set_colors(state_.settings.colors);
   window_.begin_frame();
+  if (shown_.arrange(state_.compare)) upload_picture();
   blit_.draw(picture_pixels(), window_.framebuffer_height());
 
   UiResult result;
@@ -258,9 +270,12 @@ void App::draw() {
     draw_time_line(places.time_line, theme_, state_, result);
     draw_pose_panel(places.picture, theme_, state_, result);
   }
+  draw_picture_lines(places.picture, theme_, state_);
+  draw_comparison(places.picture, theme_, state_, result);
   draw_overlays(places.picture, theme_, state_, result);
   result.widgets["picture"] = places.picture;
   const bool steered = state_.file && steer_by_mouse(state_.camera, places.picture);
+  if (pick_by_mouse(state_, places.picture)) redraws_ = kSettlingDraws;
   motion_ = steered || state_.playback.scrubbing() ? Motion::kDragging : Motion::kStill;
   window_.end_frame();
 

@@ -16,6 +16,7 @@
 #include "viewer/picture/render_worker.h"
 #include "viewer/picture/request_policy.h"
 #include "viewer/picture/resolution.h"
+#include "viewer/picture/shown_picture.h"
 #include "viewer/scene/scene_loader.h"
 #include "viewer/state/view_state.h"
 #include "viewer/window/texture_blit.h"
@@ -48,6 +49,7 @@ class App {
   void reset_view();
 
   void show_finished_frame();
+  void upload_picture();
   void update_shown_rate();
   void expire_notice();
 
@@ -90,7 +92,7 @@ class App {
 
   RequestPolicy requests_;
   double full_picture_ms_ = 0;  ///< the last frame's time, scaled to full resolution
-  Picture shown_;
+  ShownPicture shown_;
   std::deque<double> shown_times_;
   std::uint64_t frames_shown_ = 0, window_draws_ = 0;
 

@@ -39,6 +39,12 @@ void App::execute(const Action& action) {
     case Command::kNextShading:
       state_.settings.next_shading();
       break;
+    case Command::kNextCompare:
+      state_.compare.mode = next_compare_mode(state_.compare.mode);
+      break;
+    case Command::kShowAll:
+      state_.clusters.show_all();
+      break;
     case Command::kFit:
       if (state_.file) state_.camera.fit(state_.file->model().bounds, picture_aspect());
       break;
@@ -107,10 +113,10 @@ void App::copy_render_command() {
 }
 
 void App::save_picture() {
-  if (shown_.pixels.empty())
+  if (shown_.picture().pixels.empty())
     show_notice("There is no picture to save yet");
   else
-    save(shown_);
+    save(shown_.picture());
 }
 
 void App::save_window() {

@@ -18,6 +18,8 @@ enum class Command {
   kNextTechnique,
   kTechniqueByNumber,
   kNextShading,
+  kNextCompare,
+  kShowAll,  ///< clusters
   kFit,
   kResetView,
   kSavePicture,

@@ -79,6 +79,7 @@ std::string tab_ids() {
 
 void check(const ViewerOptions& options) {
   if (!options.technique.empty()) find_technique(options.technique);
+  if (!options.against.empty()) find_technique(options.against);
   if (!std::isfinite(options.time) || options.time < 0)
     throw usage("--time: give seconds from the clip's start, 0 or more");
   if (options.threads < 0) throw usage("--threads: give 0 for all cores, or how many");
@@ -88,7 +89,7 @@ void check(const ViewerOptions& options) {
 
 std::optional<ViewerOptions> parse_options(int argc, const char* const* argv, std::ostream& out) {
   ViewerOptions options;
-  std::string size, shading, camera, theme, tab;
+  std::string size, shading, camera, theme, tab, compare;
   bool play = false;
 
   CLI::App app{"mdview: look at an animated model in an .mdk file while it is ray traced.",
@@ -112,6 +113,9 @@ std::optional<ViewerOptions> parse_options(int argc, const char* const* argv, st
   app.add_flag("--play", play, "start playing");
   app.add_option("--camera", camera,
                  "ten numbers: eye xyz, target xyz, up xyz, vertical field of view in degrees");
+  app.add_option("--compare", compare,
+                 "hold a second technique against the first: side, wipe or difference (off)");
+  app.add_option("--against", options.against, "the second technique, by id (rebuild-bvh)");
   app.add_option("--tab", tab, "page of the side panel to start with: " + tab_ids() + " (view)");
   app.add_option("--threads", options.threads, "threads for tracing (all)");
   app.add_option("--isa", options.isa, "use no more than sse4, avx2, avx512 or neon (the best)");
@@ -136,6 +140,7 @@ std::optional<ViewerOptions> parse_options(int argc, const char* const* argv, st
   if (!shading.empty()) options.shading = find_shading(shading);
   if (!camera.empty()) options.camera = parse_camera(camera);
   if (!theme.empty()) options.colors = parse_theme(theme);
+  if (!compare.empty()) options.compare = find_compare_mode(compare);
   if (!tab.empty()) options.tab = find_panel_tab(tab);
   if (play) options.start = StartMode::kPlaying;
   check(options);

@@ -9,6 +9,7 @@
 #include "common/trace/camera.h"
 #include "common/trace/shading.h"
 #include "viewer/state/color_scheme.h"
+#include "viewer/state/compare.h"
 #include "viewer/state/panel_tab.h"
 
 namespace mdk {
@@ -38,6 +39,8 @@ struct ViewerOptions {
   int threads = 0;               ///< 0: all
   std::string isa;               ///< empty: the best there is
   std::string screenshot;        ///< where to write the whole window at the end
+  CompareMode compare = CompareMode::kOff;
+  std::string against;  ///< technique to compare with; empty: default_against()
   PanelTab tab = PanelTab::kView;
   std::uint64_t quit_after = 0;  ///< finished frames shown; 0: stay
   bool print_state = false;

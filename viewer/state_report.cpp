@@ -48,6 +48,48 @@ std::string_view shading_id(ShadingMode mode) {
   return "";
 }
 
+Json compare_json(const ViewState& state) {
+  const CompareSettings& compare = state.compare;
+  Json json = {{"mode", compare_mode_id(compare.mode)},
+               {"against", technique_table()[compare.against].id},
+               {"divider", compare.divider}};
+  const bool known = state.second_frame && state.difference;
+  json["technique"] = known ? Json(technique_table()[state.second_frame->technique].id) : Json();
+  json["time_to_image_ms"] = known ? Json(state.second_frame->stats.time_to_image_ms()) : Json();
+  json["differing_pixels"] = known ? Json(state.difference->pixels) : Json();
+  json["largest_difference"] = known ? Json(state.difference->largest) : Json();
+  return json;
+}
+
+Json clusters_json(const ViewState& state) {
+  if (!state.file) return nullptr;
+  const ClusterView& clusters = state.clusters;
+  const auto number = [](const std::optional<std::uint32_t>& c) { return c ? Json(*c) : Json(); };
+  return {{"count", state.model()->cluster_count()},
+          {"shown", clusters.shown_count()},
+          {"solo", number(clusters.solo())},
+          {"hovered", number(clusters.hovered)}};
+}
+
+Json picked_json(const ViewState& state) {
+  if (!state.picked) return nullptr;
+  const PickedTriangle& picked = *state.picked;
+  const Moment moment = state.last_frame ? state.last_frame->moment : Moment{};
+  const Model& model = *state.model();
+  const Aabb& box = model.segment_boxes(segment_of(model, moment))[picked.triangle];
+  return {{"triangle", picked.triangle},
+          {"source_triangle", model.source_triangles[picked.triangle]},
+          {"cluster", picked.cluster},
+          {"depth", picked.depth},
+          {"fuzzy_box", {box.lo.x, box.lo.y, box.lo.z, box.hi.x, box.hi.y, box.hi.z}}};
+}
+
+Json overlays_json(const OverlaySettings& overlays) {
+  return {{"world_boxes", overlays.world_boxes}, {"local_boxes", overlays.local_boxes},
+          {"tree_cells", overlays.tree_cells},   {"tree_depth", overlays.tree_depth},
+          {"fuzzy_box", overlays.fuzzy_box},     {"local_basis", overlays.local_basis}};
+}
+
 const char* loop_id(LoopMode mode) {
   switch (mode) {
     case LoopMode::kOnce:
@@ -106,6 +148,10 @@ std::string state_json(const ViewState& state, const WindowReport& window) {
   json["cost_columns"] = state.settings.cost_columns == CostColumns::kTimes ? "times" : "work";
   json["camera"] = camera_json(state.camera.camera());
   json["pose_by_hand"] = hand_json(state);
+  json["compare"] = compare_json(state);
+  json["clusters"] = clusters_json(state);
+  json["picked"] = picked_json(state);
+  json["overlays"] = overlays_json(state.overlays);
   json["frames_shown"] = window.frames_shown;
   json["window_draws"] = window.window_draws;
   json["last_frame"] = frame_json(state);

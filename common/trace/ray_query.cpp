@@ -204,11 +204,16 @@ std::size_t RayQuery::structure_bytes() const {
 }
 
 QueryHit brute_force_closest_hit(const Model& model, const QueryRay& ray, const KeyInterval& at) {
+  PosedMesh mesh(model);
+  mesh.set_time(at);
+  return brute_force_closest_hit(mesh, ray);
+}
+
+QueryHit brute_force_closest_hit(const PosedMesh& mesh, const QueryRay& ray) {
   const ScaledRay scaled(ray);
   if (!scaled.usable) return {};
   RayHit hit = scaled.nothing_yet(ray.t_max);
-  PosedMesh mesh(model);
-  mesh.set_time(at);
+  const Model& model = mesh.model();
   const VertexSource vertices{mesh.positions().data(), mesh.positions().data(), 0};
   TriangleBlock block;
   for (std::uint32_t t = 0; t < model.triangle_count(); ++t) {

@@ -72,5 +72,7 @@ class RayQuery {
 
 /// The closest hit among all triangles, with no structure at all: what RayQuery is judged by.
 QueryHit brute_force_closest_hit(const Model& model, const QueryRay& ray, const KeyInterval& at);
+/// The same for a mesh that is posed already, by hand or at a moment.
+QueryHit brute_force_closest_hit(const PosedMesh& mesh, const QueryRay& ray);
 
 }  // namespace mdk

@@ -65,6 +65,12 @@ void draw_page(const Theme& theme, ViewState& state, UiResult& result) {
       return draw_view_tab(theme, state, result);
     case PanelTab::kCost:
       return draw_cost_tab(theme, state, result);
+    case PanelTab::kCompare:
+      return draw_compare_tab(theme, state, result);
+    case PanelTab::kClusters:
+      return draw_clusters_tab(theme, state, result);
+    case PanelTab::kPick:
+      return draw_pick_tab(theme, state, result);
     case PanelTab::kFile:
       return draw_file_tab(theme, state, result);
   }

@@ -14,6 +14,15 @@ void draw_view_tab(const Theme& theme, ViewState& state, UiResult& result);
 /// What the last frame cost, and what every technique tried so far costs.
 void draw_cost_tab(const Theme& theme, ViewState& state, UiResult& result);
 
+/// A second technique held against the first.
+void draw_compare_tab(const Theme& theme, ViewState& state, UiResult& result);
+
+/// Boxes over the picture, and the list of clusters with solo and hide.
+void draw_clusters_tab(const Theme& theme, ViewState& state, UiResult& result);
+
+/// The picked triangle: its cluster, its residual over the clip, its boxes.
+void draw_pick_tab(const Theme& theme, ViewState& state, UiResult& result);
+
 /// Facts of the file, saving pictures.
 void draw_file_tab(const Theme& theme, ViewState& state, UiResult& result);
 

@@ -1,59 +1,17 @@
-#include <cmath>
 #include <string>
 
-#include "common/trace/technique.h"
 #include "viewer/panel/heat_legend.h"
-#include "viewer/panel/number_text.h"
 #include "viewer/panel/tabs.h"
+#include "viewer/panel/technique_list.h"
 #include "viewer/panel/ui_parts.h"
 
 namespace mdk {
 namespace {
 
-void draw_technique_row(std::size_t row, const Theme& theme, ViewState& state, UiResult& result) {
-  const TechniqueInfo& info = technique_table()[row];
-  const std::string id(info.id), label(info.label);
-  const ImVec2 corner = ImGui::GetCursorScreenPos();
-  const float width = ImGui::GetContentRegionAvail().x;
-  const float height = ImGui::GetTextLineHeight() + 3 * theme.scale;
-  ImGui::PushID(id.c_str());
-  if (ImGui::Selectable("##technique", state.settings.technique == row, 0, {width, height}))
-    state.settings.technique = row;
-  ImGui::PopID();
-  record(result.widgets, "technique:" + id);
-  if (ImGui::IsItemHovered()) {
-    ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(8 * theme.scale, 5 * theme.scale));
-    ImGui::BeginTooltip();
-    ImGui::PushTextWrapPos(ImGui::GetFontSize() * 22);
-    ImGui::Text("%s", std::string(info.summary).c_str());
-    ImGui::TextDisabled("%s  ·  %s", id.c_str(), std::string(info.source).c_str());
-    ImGui::PopTextWrapPos();
-    ImGui::EndTooltip();
-    ImGui::PopStyleVar();
-  }
-
-  ImDrawList& draw = *ImGui::GetWindowDrawList();
-  const float text_y = corner.y + (height - ImGui::GetTextLineHeight()) / 2;
-  const float middle = corner.y + height / 2, unit = theme.scale;
-  const ImVec2 dot{corner.x + 11 * unit, middle};
-  if (state.settings.technique == row)
-    draw.AddCircleFilled(dot, 5 * unit, technique_color(row), 20);
-  else
-    draw.AddCircle(dot, 4.5f * unit, technique_color(row), 20, 1.8f * unit);
-  draw.AddText({corner.x + 25 * unit, text_y}, text_color(), label.c_str());
-  if (const auto median = state.history.median_ms(row)) {
-    const std::string time = milliseconds_text(*median);
-    draw.AddText({corner.x + width - ImGui::CalcTextSize(time.c_str()).x - 7 * unit, text_y},
-                 dim_color(), time.c_str());
-  }
-}
-
 void draw_techniques(const Theme& theme, ViewState& state, UiResult& result) {
   heading(theme, "TECHNIQUE");
-  ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(0, 0));
-  for (std::size_t row = 0; row < technique_table().size(); ++row)
-    draw_technique_row(row, theme, state, result);
-  ImGui::PopStyleVar();
+  state.settings.technique =
+      draw_technique_list(theme, state.history, state.settings.technique, "technique:", result);
 }
 
 void draw_shading(const Theme& theme, ViewState& state, UiResult& result) {

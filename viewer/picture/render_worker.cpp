@@ -4,14 +4,15 @@
 #include <utility>
 
 #include "common/trace/technique.h"
+#include "viewer/picture/comparison.h"
 
 namespace mdk {
 
 bool same_picture(const RenderJob& a, const RenderJob& b) {
-  return a.file == b.file && a.technique == b.technique && a.request.at == b.request.at &&
-         a.request.camera == b.request.camera && a.request.width == b.request.width &&
-         a.request.height == b.request.height && a.request.shading == b.request.shading &&
-         a.request.samples == b.request.samples &&
+  return a.file == b.file && a.technique == b.technique && a.against == b.against &&
+         a.part == b.part && a.request.at == b.request.at && a.request.camera == b.request.camera &&
+         a.request.width == b.request.width && a.request.height == b.request.height &&
+         a.request.shading == b.request.shading && a.request.samples == b.request.samples &&
          a.request.occlusion_rays == b.request.occlusion_rays && a.pose == b.pose;
 }
 
@@ -66,26 +67,42 @@ void RenderWorker::run() {
 FinishedFrame RenderWorker::render(RenderJob job) {
   FinishedFrame frame;
   try {
-    const std::string_view id = technique_table()[job.technique].id;
-    if (job.file != open_file_) {
+    if (job.file != open_file_ || job.part != open_part_) {
       renderer_.reset();
+      second_renderer_.reset();
       open_file_ = job.file;
+      open_part_ = job.part;
     }
-    if (!renderer_) renderer_ = std::make_unique<Renderer>(open_file_->model(), id);
-    if (renderer_->technique_id() != id) renderer_->set_technique(id);
-    FrameRequest request = job.request;
-    request.pose = job.pose ? &*job.pose : nullptr;
-    frame.stats = renderer_->render(request);
-    frame.structure_bytes = renderer_->structure_bytes();
-    frame.note = renderer_->technique_note();
-    frame.heat = renderer_->heat_scale();
-    const auto pixels = renderer_->pixels();
-    frame.pixels.assign(pixels.begin(), pixels.end());
+    static_cast<TracedFrame&>(frame) = trace(renderer_, job, job.technique);
+    if (job.against) {
+      frame.second = trace(second_renderer_, job, *job.against);
+      frame.difference = difference_of(
+          {frame.pixels, frame.second->pixels, job.request.width, job.request.height});
+    }
   } catch (const std::exception& failure) {
     frame.error = failure.what();
-    renderer_.reset();  // whatever state it was left in
+    renderer_.reset();  // whatever state they were left in
+    second_renderer_.reset();
   }
   frame.job = std::move(job);
+  return frame;
+}
+
+TracedFrame RenderWorker::trace(std::unique_ptr<Renderer>& renderer, const RenderJob& job,
+                                std::size_t technique) {
+  const std::string_view id = technique_table()[technique].id;
+  const Model& model = open_part_ ? open_part_->model() : open_file_->model();
+  if (!renderer) renderer = std::make_unique<Renderer>(model, id);
+  if (renderer->technique_id() != id) renderer->set_technique(id);
+  FrameRequest request = job.request;
+  request.pose = job.pose ? &*job.pose : nullptr;
+  TracedFrame frame;
+  frame.stats = renderer->render(request);
+  frame.structure_bytes = renderer->structure_bytes();
+  frame.note = renderer->technique_note();
+  frame.heat = renderer->heat_scale();
+  const auto pixels = renderer->pixels();
+  frame.pixels.assign(pixels.begin(), pixels.end());
   return frame;
 }
 

@@ -14,28 +14,38 @@
 
 #include "common/trace/renderer.h"
 #include "formats/mdk_view.h"
+#include "viewer/scene/partial_model.h"
+#include "viewer/state/compare.h"
 
 namespace mdk {
 
 /// A picture that is wanted: of which file, how, of what.
 struct RenderJob {
   std::shared_ptr<const MdkFile> file;
-  std::size_t technique = 0;         ///< row of technique_table()
-  FrameRequest request;              ///< its pose stays null
-  std::optional<SkeletonPose> pose;  ///< posed by hand: counts instead of request.at
+  std::size_t technique = 0;                 ///< row of technique_table()
+  std::optional<std::size_t> against;        ///< another row: the same picture by that one as well
+  std::shared_ptr<const PartialModel> part;  ///< what of the file to show; null: all
+  FrameRequest request;                      ///< its pose stays null
+  std::optional<SkeletonPose> pose;          ///< posed by hand: counts instead of request.at
 };
 
 /// Whether both ask for the same pixels by the same technique; counting does not matter.
 bool same_picture(const RenderJob& a, const RenderJob& b);
 
-struct FinishedFrame {
-  RenderJob job;
-  std::string error;  ///< a sentence where there is no picture, else empty
+/// What one technique made of a job.
+struct TracedFrame {
   FrameStats stats;
   std::size_t structure_bytes = 0;
   std::string note;  ///< Technique::note()
   HeatScale heat;
   std::vector<std::uint32_t> pixels;  ///< sRGB RGBA, row 0 on top
+};
+
+struct FinishedFrame : TracedFrame {
+  RenderJob job;
+  std::string error;                  ///< a sentence where there is no picture, else empty
+  std::optional<TracedFrame> second;  ///< of job.against
+  PictureDifference difference;       ///< between the two
 };
 
 class RenderWorker {
@@ -59,10 +69,14 @@ class RenderWorker {
  private:
   void run();
   FinishedFrame render(RenderJob job);
+  /// By the renderer's own pose, so that both techniques of a comparison pay for one.
+  TracedFrame trace(std::unique_ptr<Renderer>& renderer, const RenderJob& job,
+                    std::size_t technique);
 
   std::function<void()> on_finished_;
-  std::shared_ptr<const MdkFile> open_file_;  // the worker's own: what renderer_ looks at
-  std::unique_ptr<Renderer> renderer_;
+  std::shared_ptr<const MdkFile> open_file_;  // the worker's own: what the renderers look at
+  std::shared_ptr<const PartialModel> open_part_;
+  std::unique_ptr<Renderer> renderer_, second_renderer_;
 
   mutable std::mutex mutex_;
   std::condition_variable wake_;

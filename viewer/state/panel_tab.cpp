@@ -11,6 +11,10 @@ namespace {
 constexpr std::array kTabs = {
     PanelTabInfo{PanelTab::kView, "view", "View", "technique, shading, resolution"},
     PanelTabInfo{PanelTab::kCost, "cost", "Cost", "what the last frames took, in time and work"},
+    PanelTabInfo{PanelTab::kCompare, "compare", "Compare", "two techniques held together"},
+    PanelTabInfo{PanelTab::kClusters, "clusters", "Clusters",
+                 "the parts that move alike, and their boxes"},
+    PanelTabInfo{PanelTab::kPick, "pick", "Pick", "the triangle that was clicked on"},
     PanelTabInfo{PanelTab::kFile, "file", "File", "what is open, and pictures of it"},
 };
 

@@ -6,7 +6,7 @@
 
 namespace mdk {
 
-enum class PanelTab { kView, kCost, kFile };
+enum class PanelTab { kView, kCost, kCompare, kClusters, kPick, kFile };
 
 struct PanelTabInfo {
   PanelTab tab;

@@ -2,7 +2,15 @@
 
 #include <imgui.h>
 
+#include <algorithm>
+
 namespace mdk {
+
+namespace {
+
+constexpr float kClickReach = 4;  // window coordinates a hand may slip
+
+}  // namespace
 
 bool steer_by_mouse(OrbitCamera& camera, const Rect& picture) {
   const ImGuiIO& io = ImGui::GetIO();
@@ -27,6 +35,28 @@ bool steer_by_mouse(OrbitCamera& camera, const Rect& picture) {
     camera.zoom(static_cast<double>(io.MouseWheel), pointer);
   }
   return pans || held(ImGuiMouseButton_Left);
+}
+
+bool pick_by_mouse(ViewState& state, const Rect& picture) {
+  const ImGuiIO& io = ImGui::GetIO();
+  const bool clicked =
+      ImGui::IsMouseReleased(ImGuiMouseButton_Left) && !io.WantCaptureMouse && !io.KeyShift &&
+      io.MouseDragMaxDistanceSqr[ImGuiMouseButton_Left] < kClickReach * kClickReach;
+  if (!clicked || !state.last_frame) return false;
+  const FrameReport& frame = *state.last_frame;
+  for (const Rect& place : picture_places(picture, state.compare.mode)) {
+    if (!place.contains(io.MousePos.x, io.MousePos.y)) continue;
+    const auto pixel = [](float part, std::uint32_t count) {
+      return std::min(count - 1, static_cast<std::uint32_t>(part * static_cast<float>(count)));
+    };
+    const std::uint32_t x = pixel((io.MousePos.x - place.x) / place.width, frame.width);
+    const std::uint32_t y = pixel((io.MousePos.y - place.y) / place.height, frame.height);
+    state.picked = pick_triangle(*state.shown_model(), frame.moment,
+                                 {frame.camera, frame.width, frame.height}, x, y);
+    if (state.picked && state.tab != PanelTab::kClusters) state.tab = PanelTab::kPick;
+    return true;
+  }
+  return false;
 }
 
 }  // namespace mdk

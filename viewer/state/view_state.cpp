@@ -23,6 +23,15 @@ void ViewState::note_frame(FrameReport frame) {
   history.add({frame.technique, frame.stats.time_to_image_ms()});
   costs[frame.technique].frame = frame;
   last_frame = std::move(frame);
+  second_frame.reset();
+  difference.reset();
+}
+
+void ViewState::note_second_frame(FrameReport frame, const PictureDifference& found) {
+  history.add({frame.technique, frame.stats.time_to_image_ms()});
+  costs[frame.technique].frame = frame;
+  second_frame = std::move(frame);
+  difference = found;
 }
 
 void ViewState::note_work(const WorkReport& work) {
@@ -32,6 +41,8 @@ void ViewState::note_work(const WorkReport& work) {
 
 void ViewState::forget_frames() {
   last_frame.reset();
+  second_frame.reset();
+  difference.reset();
   last_work.reset();
   costs.clear();
   history.clear();

@@ -12,12 +12,17 @@
 #include "common/trace/shading.h"
 #include "formats/mdk_view.h"
 #include "viewer/scene/scene_loader.h"
+#include "viewer/state/cluster_view.h"
 #include "viewer/state/color_scheme.h"
+#include "viewer/state/compare.h"
 #include "viewer/state/frame_history.h"
 #include "viewer/state/hand_pose.h"
 #include "viewer/state/layout.h"
+#include "viewer/state/moment.h"
 #include "viewer/state/orbit_camera.h"
+#include "viewer/state/overlay_settings.h"
 #include "viewer/state/panel_tab.h"
+#include "viewer/state/pick.h"
 #include "viewer/state/playback.h"
 
 namespace mdk {
@@ -56,6 +61,8 @@ struct FrameReport {
   std::size_t structure_bytes = 0;
   std::string note;  ///< what the technique chose, where it chooses
   HeatScale heat;    ///< of heat maps
+  Camera camera;
+  Moment moment;
 };
 
 /// What the last counting frame counted.
@@ -79,10 +86,16 @@ struct ViewState {
   ViewSettings settings;
   Playback playback;
   OrbitCamera camera;
+  CompareSettings compare;
+  ClusterView clusters;
+  OverlaySettings overlays;
+  std::optional<PickedTriangle> picked;
   bool turntable = false;  ///< the camera goes slowly round
   HandPose hand;           ///< of a file with a skeleton; inactive for others
 
   std::optional<FrameReport> last_frame;
+  std::optional<FrameReport> second_frame;      ///< of the technique it is compared with
+  std::optional<PictureDifference> difference;  ///< between the two
   std::optional<WorkReport> last_work;
   std::map<std::size_t, TechniqueCost> costs;  ///< by row of technique_table()
   FrameHistory history;
@@ -96,9 +109,13 @@ struct ViewState {
 
   /// Whether the picture changes by itself as time passes.
   bool moves() const { return file && (playback.playing() || turntable); }
+  /// The triangles that are in the picture; null: no file.
+  const Model* shown_model() const { return clusters.part() ? &clusters.part()->model() : model(); }
   const Model* model() const { return file ? &file->model() : nullptr; }
 
   void note_frame(FrameReport frame);
+  /// Of the technique the last one is compared with.
+  void note_second_frame(FrameReport frame, const PictureDifference& difference);
   void note_work(const WorkReport& work);
   /// Another file is open: what frames of the last one cost counts no more.
   void forget_frames();

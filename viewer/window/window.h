@@ -8,6 +8,7 @@
 
 #include "viewer/commands.h"
 #include "viewer/options.h"
+#include "viewer/picture/picture.h"
 
 struct GLFWwindow;
 
@@ -15,12 +16,6 @@ namespace mdk {
 
 /// Whether a size counts pixels of an ordinary display and grows on a dense one.
 enum class SizeUnit { kExact, kScaled };
-
-/// sRGB RGBA, width * height, row 0 on top.
-struct Picture {
-  std::uint32_t width = 0, height = 0;
-  std::vector<std::uint32_t> pixels;
-};
 
 /// One per process. All of it for the main thread, except wake().
 class Window {
