@@ -2,9 +2,13 @@
 // picture.
 #include <gmock/gmock.h>
 
+#include <algorithm>
+#include <utility>
+
 #include "common/trace/renderer.h"
 #include "formats/mdk_view.h"
 #include "tests/viewer/mdview_gui.h"
+#include "viewer/scene/cluster_facts.h"
 
 namespace mdk::test {
 namespace {
@@ -132,6 +136,33 @@ TEST_F(MdviewGui, ClustersAreShownAloneHiddenAndAllAgain) {
   EXPECT_GT(others, 100);
   EXPECT_LT(others, all);
   EXPECT_GE(alone + others, all);
+}
+
+TEST_F(MdviewGui, TheListOfClustersIsSortedByAClickOnATitle) {
+  look_at_tab("clusters");
+  const auto rows_from_above = [&](const json& widgets) {
+    std::vector<std::pair<double, std::uint32_t>> rows;
+    for (std::uint32_t c = 0; widgets.contains("cluster:" + std::to_string(c)); ++c)
+      rows.emplace_back(widgets["cluster:" + std::to_string(c)][1].get<double>(), c);
+    std::sort(rows.begin(), rows.end());
+    std::vector<std::uint32_t> order;
+    for (const auto& [y, c] : rows) order.push_back(c);
+    return order;
+  };
+  const auto session = start_on_bar({"--tab", "clusters"});
+  session->click(in_widget("sort:cost"));
+  const auto order = rows_from_above(session->quit().state["widgets"]);
+  const MdkFile file(folder_.file("bar.mdk"));
+  const std::vector<ClusterFacts> facts = cluster_facts(file.model());
+  ASSERT_EQ(order.size(), facts.size());
+  ASSERT_GE(order.size(), 2u);
+  for (std::size_t i = 1; i < order.size(); ++i)
+    EXPECT_GE(facts[order[i - 1]].cost_share, facts[order[i]].cost_share);
+  const auto second = start_on_bar({"--tab", "clusters"});
+  second->click(in_widget("sort:cost"));
+  second->click(in_widget("sort:cost"));
+  const auto turned = rows_from_above(second->quit().state["widgets"]);
+  EXPECT_NE(turned, order);
 }
 
 TEST_F(MdviewGui, BoxesAreDrawnOverThePictureAndOnlyThere) {

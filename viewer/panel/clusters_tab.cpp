@@ -122,7 +122,7 @@ void draw_row(std::uint32_t c, const ClusterFacts& facts, ViewState& state, UiRe
 
 void draw_table(const Theme& theme, ViewState& state, UiResult& result) {
   const float height = std::max(120 * theme.scale, ImGui::GetContentRegionAvail().y);
-  ImGui::PushStyleVar(ImGuiStyleVar_CellPadding, ImVec2(4 * theme.scale, theme.scale));
+  ImGui::PushStyleVar(ImGuiStyleVar_CellPadding, ImVec2(2 * theme.scale, theme.scale));
   if (ImGui::BeginTable("##clusters", kColumns,
                         ImGuiTableFlags_Sortable | ImGuiTableFlags_ScrollY | ImGuiTableFlags_RowBg,
                         {0, height})) {
@@ -131,13 +131,17 @@ void draw_table(const Theme& theme, ViewState& state, UiResult& result) {
     const auto column = [&](const char* title, float width, ImGuiTableColumnFlags flags) {
       ImGui::TableSetupColumn(title, ImGuiTableColumnFlags_WidthFixed | flags, width * unit);
     };
-    column("no.", 48, ImGuiTableColumnFlags_None);
-    column("tris", 46, ImGuiTableColumnFlags_PreferSortDescending);
-    column("residual", 62, ImGuiTableColumnFlags_PreferSortDescending);
-    column("cost", 52, ImGuiTableColumnFlags_PreferSortDescending);
-    column("##show", 74, ImGuiTableColumnFlags_NoSort);
-    ImGui::TableHeadersRow();
-    record(result.widgets, "clusters-header");
+    column("no.", 44, ImGuiTableColumnFlags_None);
+    column("tris", 50, ImGuiTableColumnFlags_PreferSortDescending);
+    column("residual", 76, ImGuiTableColumnFlags_PreferSortDescending);
+    column("cost", 54, ImGuiTableColumnFlags_PreferSortDescending);
+    column("##show", 72, ImGuiTableColumnFlags_NoSort);
+    ImGui::TableNextRow(ImGuiTableRowFlags_Headers);
+    for (int i = 0; i < kButtons; ++i) {
+      ImGui::TableSetColumnIndex(i);
+      ImGui::TableHeader(ImGui::TableGetColumnName(i));
+      record(result.widgets, std::string("sort:") + ImGui::TableGetColumnName(i));
+    }
     const std::vector<ClusterFacts>& facts = state.clusters.facts();
     for (const std::uint32_t c : sorted_clusters(facts)) draw_row(c, facts[c], state, result);
     ImGui::EndTable();

@@ -24,6 +24,8 @@ void draw_modes(const Theme& theme, ViewState& state, UiResult& result) {
   ImGui::PushTextWrapPos(0);
   if (state.compare.mode == CompareMode::kOff) {
     ImGui::TextDisabled("A second technique traces the same moment and view.");
+  } else if (state.last_frame && state.last_frame->heat.top > 0) {
+    ImGui::TextDisabled("Heat maps show the work, which differs.");
   } else if (state.difference && state.last_frame) {
     const bool same = state.difference->pixels == 0;
     std::string text = difference_text(*state.difference, *state.last_frame);
