@@ -104,7 +104,7 @@ TEST_F(MdviewGui, EveryPageOfThePanelFitsAWindowOf1280x800) {
                            .state;
     EXPECT_EQ(state["tab"], tab);
     const double room = state["widgets"]["page"][3], height = state["widgets"]["page-content"][3];
-    EXPECT_GT(height, 0.2 * room) << tab;
+    EXPECT_GT(height, 40) << tab;
     EXPECT_LE(height, room) << tab;
     const json& footer = state["widgets"]["history"];
     EXPECT_LE(footer[1].get<double>() + footer[3].get<double>(), 800) << tab;

@@ -44,9 +44,13 @@ TEST_F(Bar, APartShowsTheSameByEveryTechniqueAndNothingOfWhatIsLeftOut) {
   for (std::uint32_t y = 0; y < request_.height; ++y)
     for (std::uint32_t x = 0; x < request_.width; ++x) {
       const std::uint32_t triangle = brute.hits().triangle(x, y);
-      if (triangle != kNoHit) EXPECT_NE(cluster_of_triangle(model_, triangle), 1u);
+      if (triangle != kNoHit) {
+        EXPECT_NE(cluster_of_triangle(model_, triangle), 1u);
+      }
       const std::uint32_t before = whole.hits().triangle(x, y);
-      if (before != kNoHit && cluster_of_triangle(model_, before) != 1) EXPECT_EQ(triangle, before);
+      if (before != kNoHit && cluster_of_triangle(model_, before) != 1) {
+        EXPECT_EQ(triangle, before);
+      }
     }
   for (const TechniqueInfo& technique : technique_table()) {
     Renderer renderer(part.model(), technique.id);

@@ -23,7 +23,7 @@ void draw_modes(const Theme& theme, ViewState& state, UiResult& result) {
     state.compare.mode = static_cast<CompareMode>(*picked);
   ImGui::PushTextWrapPos(0);
   if (state.compare.mode == CompareMode::kOff) {
-    ImGui::TextDisabled("A second technique traces the same moment and view.");
+    ImGui::TextDisabled("A second technique traces the same view.");
   } else if (state.last_frame && state.last_frame->heat.top > 0) {
     ImGui::TextDisabled("Heat maps show the work, which differs.");
   } else if (state.difference && state.last_frame) {
