@@ -67,6 +67,7 @@ void App::show_loaded_scene() {
   shown_.clear();
   state_.clusters = ClusterView(state_.file->model());
   state_.picked.reset();
+  state_.residuals = {};
   full_picture_ms_ = 0;
   window_.set_title(state_.file_name + " - mdview");
   if (scene->is_again) {

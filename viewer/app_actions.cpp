@@ -99,7 +99,7 @@ void App::reset_view() {
 }
 
 std::string App::render_command_of_picture() const {
-  if (!state_.file || state_.hand.active) return {};
+  if (!state_.file || state_.hand.active || state_.clusters.part()) return {};
   const Playback& playback = state_.playback;
   return render_command(wanted_job(), state_.path, playback.clips()[playback.clip()].name,
                         playback.time());
@@ -108,8 +108,10 @@ std::string App::render_command_of_picture() const {
 void App::copy_render_command() {
   const std::string command = render_command_of_picture();
   if (!command.empty()) window_.set_clipboard(command);
-  show_notice(command.empty() ? "No mdprep command makes this picture: it is posed by hand"
-                              : "Copied the mdprep command that renders this picture");
+  show_notice(
+      command.empty()
+          ? "No mdprep command makes this picture: it is posed by hand, or parts are left out"
+          : "Copied the mdprep command that renders this picture");
 }
 
 void App::save_picture() {

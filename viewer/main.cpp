@@ -4,9 +4,9 @@
 #include <iostream>
 
 #include "common/base/error.h"
-#include "common/base/printable_text.h"
 #include "common/base/isa.h"
 #include "common/base/parallel.h"
+#include "common/base/printable_text.h"
 #include "viewer/app.h"
 #include "viewer/options.h"
 

@@ -123,6 +123,7 @@ TEST_F(MdviewGui, ClustersAreShownAloneHiddenAndAllAgain) {
   state = second->quit().state;
   const int others = state["last_frame"]["hits"];
   EXPECT_EQ(state["clusters"]["hovered"], 0);
+  EXPECT_TRUE(state["render_command"].is_null());  // none makes a picture of a part
   EXPECT_EQ(state["clusters"]["shown"], state["clusters"]["count"].get<int>() - 1);
 
   const auto third = start_on_bar({"--tab", "clusters"});

@@ -67,6 +67,12 @@ TEST(ViewerOptions, ReadsEveryOption) {
                               "--quit-after",
                               "12",
                               "--print-state",
+                              "--compare",
+                              "wipe",
+                              "--against",
+                              "refit-bvh",
+                              "--tab",
+                              "clusters",
                               "--play"});
   ASSERT_TRUE(options);
   EXPECT_EQ(options->file, "hand.mdk");
@@ -82,6 +88,9 @@ TEST(ViewerOptions, ReadsEveryOption) {
   EXPECT_EQ(options->quit_after, 12u);
   EXPECT_TRUE(options->print_state);
   EXPECT_EQ(options->start, StartMode::kPlaying);
+  EXPECT_EQ(options->compare, CompareMode::kWipe);
+  EXPECT_EQ(options->against, "refit-bvh");
+  EXPECT_EQ(options->tab, PanelTab::kClusters);
 }
 
 TEST(ViewerOptions, RefusesWhatItDoesNotKnow) {
@@ -89,6 +98,9 @@ TEST(ViewerOptions, RefusesWhatItDoesNotKnow) {
   expect_refused({"a.mdk", "b.mdk"}, "b.mdk");
   expect_refused({"--technique", "magic"}, "magic");
   expect_refused({"--shading", "plaid"}, "plaid");
+  expect_refused({"--compare", "both"}, "both");
+  expect_refused({"--against", "magic"}, "magic");
+  expect_refused({"--tab", "secret"}, "secret");
 }
 
 TEST(ViewerOptions, RefusesSizesThatCannotBe) {
@@ -116,8 +128,9 @@ TEST(ViewerOptions, RefusesNumbersThatAreNone) {
 TEST(ViewerOptions, HelpAndVersionAnswerOnStdoutAndStartNothing) {
   std::string said;
   EXPECT_FALSE(parse({"--help"}, &said));
-  for (const char* option : {"--size", "--technique", "--shading", "--time", "--clip", "--camera",
-                             "--threads", "--isa", "--screenshot", "--quit-after", "--print-state"})
+  for (const char* option :
+       {"--size", "--technique", "--shading", "--time", "--clip", "--camera", "--threads", "--isa",
+        "--screenshot", "--quit-after", "--print-state", "--compare", "--against", "--tab"})
     EXPECT_THAT(said, HasSubstr(option));
   EXPECT_FALSE(parse({"--version"}, &said));
   EXPECT_THAT(said, HasSubstr("mdview"));

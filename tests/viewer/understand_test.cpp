@@ -119,6 +119,10 @@ TEST_F(Bar, TheResidualCurveIsThatOfTheHeatMap) {
     triangle_residuals(mesh, residuals);
     EXPECT_NEAR(curve.residuals[i], residuals[triangle], 1e-6);
   }
+  ResidualCurveCache cache;
+  EXPECT_EQ(cache.curve(model_, 1, triangle).residuals, curve.residuals);
+  EXPECT_EQ(cache.curve(model_, 0, triangle).residuals.size(), model_.clips[0].key_count);
+  EXPECT_EQ(cache.curve(model_, 1, triangle).residuals, curve.residuals);
 }
 
 TEST_F(Bar, FactsOfClustersAddUp) {
@@ -171,6 +175,9 @@ TEST_F(Bar, PlacesOfClustersAreThoseOfThePosedMesh) {
     EXPECT_EQ(places.local_from_world[c], mesh.cluster_map(c));
     EXPECT_EQ(places.world_boxes[c], mesh.cluster_box(c));
   }
+  const auto corners = corners_at(model_, moment, 5);
+  for (std::size_t i = 0; i < 3; ++i)
+    EXPECT_EQ(corners[i], to_double(mesh.positions()[model_.triangles[5].v[i]]));
 }
 
 }  // namespace

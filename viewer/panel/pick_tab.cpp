@@ -101,7 +101,7 @@ void draw_pick_tab(const Theme& theme, ViewState& state, UiResult& result) {
   }
   const PickedTriangle picked = *state.picked;
   const auto clip = static_cast<std::uint32_t>(state.playback.clip());
-  const ResidualCurve curve = residual_curve(*state.model(), clip, picked.triangle);
+  const ResidualCurve& curve = state.residuals.curve(*state.model(), clip, picked.triangle);
   draw_facts(state, picked, residual_at(curve, state.playback.time()));
   heading(theme, "RESIDUAL OVER THE CLIP");
   draw_curve(theme, curve, state.playback.time(), result);

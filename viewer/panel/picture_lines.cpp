@@ -131,12 +131,9 @@ void draw_basis(const Aabb& local_box, const Affine3d& map, LineDrawer& lines) {
 void draw_pick(const Scene& scene, const ViewState& state, const Moment& moment,
                LineDrawer& lines) {
   const PickedTriangle& picked = *state.picked;
-  const PosedMesh mesh = mesh_at(scene.model, moment);
-  const Triangle& triangle = scene.model.triangles[picked.triangle];
+  const auto corners = corners_at(scene.model, moment, picked.triangle);
   const Pen outline{IM_COL32(255, 255, 255, 255), 2.0f, kEdge};
-  for (std::size_t i = 0; i < 3; ++i)
-    lines.line(to_double(mesh.positions()[triangle.v[i]]),
-               to_double(mesh.positions()[triangle.v[(i + 1) % 3]]), outline);
+  for (std::size_t i = 0; i < 3; ++i) lines.line(corners[i], corners[(i + 1) % 3], outline);
   const auto map = scene.world_from_local(picked.cluster);
   if (!map) return;
   if (state.overlays.local_basis) draw_basis(scene.trees[picked.cluster].local_box, *map, lines);

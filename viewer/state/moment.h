@@ -1,6 +1,7 @@
 // Moment: the pose a picture shows, and where the clusters' bases and boxes are in it.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <vector>
 
@@ -25,6 +26,10 @@ struct ClusterPlaces {
 
 /// Cost: O(clusters); O(vertices + triangles) for a pose by hand.
 ClusterPlaces cluster_places(const Model& model, const Moment& moment);
+
+/// The corners of a triangle, as mesh_at() has them. Cost: three vertices; O(vertices + triangles)
+/// for a pose by hand.
+std::array<Vec3d, 3> corners_at(const Model& model, const Moment& moment, std::uint32_t triangle);
 
 /// The time segment whose boxes hold.
 std::uint32_t segment_of(const Model& model, const Moment& moment);

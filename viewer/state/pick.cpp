@@ -60,4 +60,13 @@ ResidualCurve residual_curve(const Model& model, std::uint32_t clip, std::uint32
   return curve;
 }
 
+const ResidualCurve& ResidualCurveCache::curve(const Model& model, std::uint32_t clip,
+                                               std::uint32_t triangle) {
+  if (curve_.seconds.empty() || clip != clip_ || triangle != triangle_)
+    curve_ = residual_curve(model, clip, triangle);
+  clip_ = clip;
+  triangle_ = triangle;
+  return curve_;
+}
+
 }  // namespace mdk

@@ -43,4 +43,14 @@ struct ResidualCurve {
 /// triangle_residuals()). Cost: O(keys), decoding three vertices for each.
 ResidualCurve residual_curve(const Model& model, std::uint32_t clip, std::uint32_t triangle);
 
+/// The last curve that was asked for, so that drawing it again costs nothing. For one model.
+class ResidualCurveCache {
+ public:
+  const ResidualCurve& curve(const Model& model, std::uint32_t clip, std::uint32_t triangle);
+
+ private:
+  std::uint32_t clip_ = 0, triangle_ = 0;
+  ResidualCurve curve_;  ///< empty: none was asked for
+};
+
 }  // namespace mdk

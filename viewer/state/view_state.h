@@ -90,8 +90,9 @@ struct ViewState {
   ClusterView clusters;
   OverlaySettings overlays;
   std::optional<PickedTriangle> picked;
-  bool turntable = false;  ///< the camera goes slowly round
-  HandPose hand;           ///< of a file with a skeleton; inactive for others
+  ResidualCurveCache residuals;  ///< of the picked triangle
+  bool turntable = false;        ///< the camera goes slowly round
+  HandPose hand;                 ///< of a file with a skeleton; inactive for others
 
   std::optional<FrameReport> last_frame;
   std::optional<FrameReport> second_frame;      ///< of the technique it is compared with
