@@ -47,4 +47,8 @@ done
 click time-line
 xdotool mousemove 470 100 sleep 0.6 key q
 wait "$viewer"
-python3 -m json.tool "$work/state.json" | grep -E '"(technique|clip|time|time_to_image_ms)"'
+python3 -c '
+import json, sys
+state = json.load(open(sys.argv[1]))
+print(state["technique"], state["clip"], state["time"], state["last_frame"]["time_to_image_ms"])
+' "$work/state.json"
