@@ -1,14 +1,12 @@
-// tinygltf parses the JSON, takes the GLB apart and decodes data URIs; everything it hands over is
-// turned into checked structs here. The schema check before it has settled types and indices.
+// Everything that tinygltf hands over is turned into checked structs here. The schema check before
+// it has settled types and indices.
 #include "formats/gltf_document.h"
 
 #include <tiny_gltf.h>
 
 #include <algorithm>
 #include <cmath>
-#include <exception>
 #include <map>
-#include <new>
 #include <utility>
 
 #include "common/base/error.h"
@@ -17,6 +15,7 @@
 #include "formats/gltf_checks.h"
 #include "formats/gltf_draco.h"
 #include "formats/gltf_meshopt.h"
+#include "formats/gltf_parse.h"
 #include "formats/gltf_schema.h"
 
 namespace mdk::gltf {
@@ -24,80 +23,6 @@ namespace {
 
 // An accessor without bytes is free to claim any length, so its length has a limit of its own.
 constexpr std::size_t kMaxZeroElements = std::size_t{1} << 24;
-
-/// What tinygltf's file callbacks share: they serve the buffers of the schema, in order, and
-/// nothing else, so that no other file is ever opened.
-struct BufferFiles {
-  const std::string& path;
-  const std::vector<ExternalBuffer>& wanted;
-  std::vector<std::string>& dependencies;
-  std::size_t next = 0;
-  std::exception_ptr failure;
-};
-
-bool buffer_wanted(const std::string&, void* user) {
-  const auto& files = *static_cast<BufferFiles*>(user);
-  return files.next < files.wanted.size();
-}
-
-std::string same_name(const std::string& name, void*) { return name; }
-
-bool read_buffer(std::vector<unsigned char>* out, std::string*, const std::string&, void* user) {
-  auto& files = *static_cast<BufferFiles*>(user);
-  const ExternalBuffer& buffer = files.wanted[files.next++];
-  try {
-    const std::string file = resolve_uri(files.path, buffer.uri);
-    *out = read_whole_file(file);
-    files.dependencies.push_back(file);
-    if (out->size() < buffer.bytes)
-      throw bad_input(file, "holds " + std::to_string(out->size()) + " bytes where " +
-                                std::to_string(buffer.bytes) + " are needed; it may be cut short");
-    out->resize(buffer.bytes);
-    return true;
-  } catch (...) {
-    files.failure = std::current_exception();
-    return false;
-  }
-}
-
-bool no_writing(std::string*, const std::string&, const std::vector<unsigned char>&, void*) {
-  return false;
-}
-
-/// Keeps a data URI's bytes as they are. Images in buffer views are found through their view later.
-bool keep_encoded(tinygltf::Image* image, const int, std::string*, std::string*, int, int,
-                  const unsigned char* bytes, int size, void*) {
-  if (image->bufferView < 0 && size > 0) image->image.assign(bytes, bytes + size);
-  return true;
-}
-
-tinygltf::Model parse(const Bytes& bytes, BufferFiles& files) {
-  tinygltf::TinyGLTF loader;
-  loader.SetImageLoader(keep_encoded, nullptr);
-  loader.SetFsCallbacks({buffer_wanted, same_name, read_buffer, no_writing, &files});
-  tinygltf::Model model;
-  std::string error, warning;
-  const auto size = static_cast<unsigned int>(bytes.size());
-  bool loaded = false;
-  try {
-    loaded =
-        is_glb(bytes)
-            ? loader.LoadBinaryFromMemory(&model, &error, &warning, bytes.data(), size, "")
-            : loader.LoadASCIIFromString(&model, &error, &warning,
-                                         reinterpret_cast<const char*>(bytes.data()), size, "");
-  } catch (const std::bad_alloc&) {
-    throw;
-  } catch (const std::exception&) {
-    error = "its parts do not fit together";
-  }
-  if (files.failure) std::rethrow_exception(files.failure);
-  if (!loaded) {
-    // Its first line, without the bytes of a data URI.
-    const std::size_t end = std::min({error.find('\n'), error.find("data:"), std::size_t{200}});
-    throw bad_input(files.path, "is not usable glTF (" + error.substr(0, end) + ")");
-  }
-  return model;
-}
 
 class Converter {
  public:
@@ -421,8 +346,7 @@ Document load_document(const std::string& path, Notes& notes) {
   if (!schema.plain_json.empty()) bytes = with_json(bytes, schema.plain_json);
   for (const std::string& extension : schema.ignored_extensions)
     notes.add("the extension " + extension + " is left out");
-  BufferFiles files{path, schema.external_buffers, document.dependencies, 0, nullptr};
-  tinygltf::Model model = parse(bytes, files);
+  tinygltf::Model model = parse_gltf({path, bytes, schema.external_buffers}, document.dependencies);
   Converter(model, schema.compression, document).run();
   return document;
 }

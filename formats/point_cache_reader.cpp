@@ -122,6 +122,7 @@ std::uint32_t copy_frames(ByteSpan bytes, const Layout& layout, std::vector<Vec3
   for (std::size_t begin = 0; begin < layout.frames; begin += kFramesPerReport) {
     progress.report("read", static_cast<double>(begin) / layout.frames);
     const std::size_t count = std::min<std::size_t>(kFramesPerReport, layout.frames - begin);
+    positions.resize((begin + count) * layout.points);  // cleared just before it is filled
     parallel_chunks(count, 1, [&](std::size_t from, std::size_t to) {
       for (std::size_t frame = begin + from; frame < begin + to; ++frame) {
         const ByteSpan source =
@@ -150,7 +151,7 @@ PointCache read_point_cache(const std::string& path, const PointCacheOptions& op
   Layout layout =
       is_pc2 ? read_pc2_header(path, bytes, options) : read_mdd_header(path, bytes, options);
   PointCache cache;
-  cache.positions.resize(std::size_t{layout.points} * layout.frames);
+  cache.positions.reserve(std::size_t{layout.points} * layout.frames);
   const std::uint32_t broken = copy_frames(bytes, layout, cache.positions, progress);
   if (broken < layout.frames)
     throw bad_input(

@@ -1,6 +1,7 @@
 // mdprep bake: source in, one .mdk image out.
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <filesystem>
 #include <iostream>
 #include <memory>
 
@@ -16,6 +17,7 @@
 #include "preprocess/cli/number_text.h"
 #include "preprocess/cli/output_paths.h"
 #include "preprocess/cli/progress_bar.h"
+#include "preprocess/cli/scratch_memory.h"
 #include "preprocess/cli/source_reader.h"
 #include "preprocess/cli/text_file.h"
 #include "preprocess/cli/tool_version.h"
@@ -152,13 +154,19 @@ void require_memory(const BakeArguments& arguments, const PoseSequence& sequence
                     const MemoryLimit& limit) {
   constexpr std::uint64_t kLargestTables = std::uint64_t{32} << 20;
   const std::uint64_t keys = sequence.positions.size() * sizeof(Vec3f);
-  const std::uint64_t needed = peak_memory_bytes() + std::min(keys / 2, kLargestTables);
+  const std::uint64_t needed = limit.counted_bytes() + std::min(keys / 2, kLargestTables);
   if (limit.bytes() == 0 || needed <= limit.bytes()) return;
   throw Error(ErrorCode::kOverLimit,
               joined_inputs(arguments) + ": " + grouped_text(sequence.key_count()) + " keys of " +
                   grouped_text(sequence.vertex_count) + " vertices need at least " +
                   bytes_text(needed) + ", --memory-limit " + arguments.machine.memory_limit +
                   " is less; allow more, or bake fewer clips");
+}
+
+/// Blocks that a good part of the limit would go on.
+std::uint64_t smallest_scratch_block(const MemoryLimit& limit) {
+  constexpr std::uint64_t kShare = 16, kSmallest = std::uint64_t{16} << 20;
+  return limit.bytes() == 0 ? 0 : std::max(limit.bytes() / kShare, kSmallest);
 }
 
 void run_bake(const BakeArguments& arguments, CommandContext& context) {
@@ -169,6 +177,8 @@ void run_bake(const BakeArguments& arguments, CommandContext& context) {
   const Source source_files = find_source(arguments.inputs);
   keep_inputs(arguments, source_files.files.files);
   check_places(arguments);
+  const ScratchMemory scratch(std::filesystem::path(arguments.output).parent_path().string(),
+                              smallest_scratch_block(limits.memory()));
   const DeferredInterrupts interrupts;
 
   BakeOutcome outcome{joined_inputs(arguments), arguments.output, {}, 0, 0};

@@ -61,10 +61,16 @@ MemoryLimit::MemoryLimit(const std::string& text) {
   const rlimit limit{std::min<rlim_t>(bytes_ - program + stacks, before_.rlim_max),
                      before_.rlim_max};
   setrlimit(RLIMIT_DATA, &limit);
+  program_bytes_ = program;
+  stack_bytes_ = stacks;
 }
 
 MemoryLimit::~MemoryLimit() {
   if (bytes_ > 0) setrlimit(RLIMIT_DATA, &before_);
+}
+
+std::uint64_t MemoryLimit::counted_bytes() const {
+  return program_bytes_ + process_memory().data - stack_bytes_;
 }
 
 std::uint64_t peak_memory_bytes() {

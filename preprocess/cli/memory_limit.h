@@ -23,8 +23,11 @@ class MemoryLimit {
   /// 0: no limit.
   std::uint64_t bytes() const { return bytes_; }
 
+  /// What counts for it now.
+  std::uint64_t counted_bytes() const;
+
  private:
-  std::uint64_t bytes_ = 0;
+  std::uint64_t bytes_ = 0, program_bytes_ = 0, stack_bytes_ = 0;
   rlimit before_ = {};
 };
 

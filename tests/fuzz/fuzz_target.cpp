@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "common/base/error.h"
+#include "common/base/parallel.h"
 
 namespace mdk::test {
 namespace {
@@ -19,6 +20,7 @@ bool is_sentence(const std::string& text) {
 }  // namespace
 
 std::string feed(const FuzzTarget& target, std::span<const unsigned char> bytes) {
+  const ThreadLimit one_thread(1);  // inputs are tiny
   try {
     target.read(bytes);
     return {};

@@ -2,7 +2,6 @@
 #include <numeric>
 #include <string_view>
 
-#include "common/base/parallel.h"
 #include "common/trace/renderer.h"
 #include "formats/mdk_view.h"
 #include "formats/mdk_writer.h"
@@ -36,7 +35,6 @@ void render(const Model& model, std::size_t turn) {
 
 /// The table's checksum is made right first: no mutation could guess it.
 void read_mdk(std::span<const unsigned char> bytes) {
-  const ThreadLimit one_thread(1);
   static FuzzFile holder("a.mdk");
   Bytes sealed(bytes.begin(), bytes.end());
   if (sealed.size() >= kHeaderBytes) seal(sealed);
