@@ -108,7 +108,7 @@ TEST(ScratchMemory, ABakeOfMoreKeysThanItsLimitHoldsGivesTheSameBytes) {
     EXPECT_EQ(outcome.status, 0) << outcome.err;
   };
   bake("free.mdk", {});
-  bake("held.mdk", {"--memory-limit", "130M"});
+  bake("held.mdk", {"--memory-limit", "64M"});
   EXPECT_TRUE(read_bytes(folder.file("held.mdk")) == read_bytes(folder.file("free.mdk")));
   EXPECT_THAT(folder.names(), testing::ElementsAre("free.mdk", "held.mdk", "wave.obj", "wave.pc2"));
 }
