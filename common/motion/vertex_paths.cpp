@@ -11,7 +11,12 @@
 namespace mdk {
 namespace {
 
-constexpr std::size_t kVerticesPerChunk = 1024;
+/// Few enough that all threads have some, many enough that what is read of each key is a good
+/// stretch: keys may stand in a file that does not fit into memory.
+std::size_t vertices_per_chunk(std::size_t vertices) {
+  constexpr std::size_t kChunks = 16, kFewest = 1024, kMost = std::size_t{1} << 16;
+  return std::clamp(vertices / kChunks, kFewest, kMost);
+}
 
 std::uint64_t mixed(std::uint64_t hash, float value) {
   // Adding 0 turns -0 into 0 and changes nothing else.
@@ -43,14 +48,16 @@ std::vector<char> differing(const PoseSequence& sequence, std::span<const std::u
   if (!groups.empty())
     for (std::size_t i = 0; i < undecided.size(); ++i)
       differs[i] = groups[candidates[i]] != groups[undecided[i]];
-  parallel_chunks(undecided.size(), kVerticesPerChunk, [&](std::size_t begin, std::size_t end) {
-    for (std::uint32_t key = 0; key < sequence.key_count(); ++key) {
-      const std::span<const Vec3f> pose = sequence.pose(key);
-      for (std::size_t i = begin; i < end; ++i)
-        if (candidates[i] != undecided[i] && !(pose[candidates[i]] == pose[undecided[i]]))
-          differs[i] = 1;
-    }
-  });
+  parallel_chunks(
+      undecided.size(), vertices_per_chunk(undecided.size()),
+      [&](std::size_t begin, std::size_t end) {
+        for (std::uint32_t key = 0; key < sequence.key_count(); ++key) {
+          const std::span<const Vec3f> pose = sequence.pose(key);
+          for (std::size_t i = begin; i < end; ++i)
+            if (candidates[i] != undecided[i] && !(pose[candidates[i]] == pose[undecided[i]]))
+              differs[i] = 1;
+        }
+      });
   return differs;
 }
 
@@ -58,13 +65,14 @@ std::vector<char> differing(const PoseSequence& sequence, std::span<const std::u
 
 std::vector<std::uint64_t> hash_paths(const PoseSequence& sequence) {
   std::vector<std::uint64_t> hashes(sequence.vertex_count, 0x2545f4914f6cdd1du);
-  parallel_chunks(hashes.size(), kVerticesPerChunk, [&](std::size_t begin, std::size_t end) {
-    for (std::uint32_t key = 0; key < sequence.key_count(); ++key) {
-      const std::span<const Vec3f> pose = sequence.pose(key);
-      for (std::size_t i = begin; i < end; ++i)
-        hashes[i] = mixed(mixed(mixed(hashes[i], pose[i].x), pose[i].y), pose[i].z);
-    }
-  });
+  parallel_chunks(hashes.size(), vertices_per_chunk(hashes.size()),
+                  [&](std::size_t begin, std::size_t end) {
+                    for (std::uint32_t key = 0; key < sequence.key_count(); ++key) {
+                      const std::span<const Vec3f> pose = sequence.pose(key);
+                      for (std::size_t i = begin; i < end; ++i)
+                        hashes[i] = mixed(mixed(mixed(hashes[i], pose[i].x), pose[i].y), pose[i].z);
+                    }
+                  });
   return hashes;
 }
 
