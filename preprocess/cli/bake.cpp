@@ -181,7 +181,7 @@ void run_bake(const BakeArguments& arguments, CommandContext& context) {
                               smallest_scratch_block(limits.memory()));
   const DeferredInterrupts interrupts;
 
-  BakeOutcome outcome{joined_inputs(arguments), arguments.output, {}, 0, 0};
+  BakeOutcome outcome{joined_inputs(arguments), arguments.output, {}, 0, 0, 0};
   Stopwatch total, stage;
   ProgressPart reading(progress, 0, kReadUntil);
   SourceOptions reading_options = arguments.source;
@@ -204,6 +204,7 @@ void run_bake(const BakeArguments& arguments, CommandContext& context) {
   outcome.seconds.write = stage.lap();
   outcome.seconds.total = total.seconds();
   outcome.peak_memory_bytes = peak_memory_bytes();
+  outcome.scratch_bytes = ScratchMemory::peak_bytes();
 
   context.inputs = source.dependencies;
   context.unread = source.unread;

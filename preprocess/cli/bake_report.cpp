@@ -80,7 +80,11 @@ std::string bake_summary(const Model& model, const DecomposeStats& stats,
          fixed_text(stats.sah_cost, 1) + "\n  " + bytes_text(outcome.file_bytes) + " in " +
          fixed_text(s.total, 2) + " s (read " + fixed_text(s.read, 2) + ", decompose " +
          fixed_text(s.decompose, 2) + ", build " + fixed_text(s.build, 2) + ", write " +
-         fixed_text(s.write, 2) + "), peak memory " + bytes_text(outcome.peak_memory_bytes) + "\n";
+         fixed_text(s.write, 2) + "), peak memory " + bytes_text(outcome.peak_memory_bytes) +
+         (outcome.scratch_bytes > 0
+              ? std::string(" with mapped files, ") + bytes_text(outcome.scratch_bytes) +
+                    " of them for long lists\n"
+              : "\n");
 }
 
 }  // namespace mdk

@@ -16,8 +16,9 @@ struct BakeSeconds {
 struct BakeOutcome {
   std::string input, output;  ///< as given on the command line
   BakeSeconds seconds;
-  std::uint64_t peak_memory_bytes = 0;
+  std::uint64_t peak_memory_bytes = 0;  ///< resident, with pages of mapped files
   std::uint64_t file_bytes = 0;
+  std::uint64_t scratch_bytes = 0;  ///< lists that stood in files without a name
 };
 
 /// Schema "mdprep-bake/1".
