@@ -74,6 +74,27 @@ TEST(MdkHostileTrace, PositionsThatAreNoNumbersAtAllCanBeRendered) {
   }
 }
 
+TEST(MdkHostileTrace, BoundsOfAnySizeCanBeLit) {
+  // Shadow rays start beyond the bounds; some tracers end the program where those lie too far out.
+  for (const float far : {1e12f, 1e17f, 1e19f, 1e25f, 2.6e36f, 3e38f}) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      ModelStorage storage = sample_model();
+      storage.bounds.lo[axis] = -far;
+      storage.bounds.hi[axis] += axis == 0 ? far : 0.0f;
+      const Model model = storage.view();
+      for (const TechniqueInfo& technique : technique_table()) {
+        Renderer renderer(model, technique.id);
+        renderer.render({.at = at_key(model.rest_key),
+                         .camera = sample_camera(),
+                         .width = kSide,
+                         .height = kSide,
+                         .shading = ShadingMode::kLit});
+        EXPECT_GT(hits_in(renderer.hits(), model.triangle_count()), 0u) << technique.id;
+      }
+    }
+  }
+}
+
 /// The kind of poses whose samples a section is tried on.
 PoseKind kind_of(const ByteRange& range) {
   static constexpr const char* kOfRig[] = {"BONE", "TGTW", "BASE", "BWFI", "BWGT", "MOFI", "MOFF"};

@@ -7,6 +7,7 @@
 #include <tbb/enumerable_thread_specific.h>
 
 #include <algorithm>
+#include <cmath>
 #include <atomic>
 #include <limits>
 #include <string>
@@ -164,7 +165,6 @@ class BeamPackets {
         packet.mask[i] = ~0u;
         packet.id[i] = 0;
         packet.flags[i] = 0;
-        packet.tnear[i] = 0;
       }
   }
 
@@ -195,14 +195,25 @@ class BeamPackets {
     for (std::uint32_t i = 0; i < kWidth; ++i) {
       const std::uint32_t ray = std::min(first + i, beam.count - 1);
       const float u = beam.u[ray], v = beam.v[ray], w = beam.w[ray];
-      packet.org_x[i] = basis.origin.x + (across.x * u + down.x * v + along.x * w);
-      packet.org_y[i] = basis.origin.y + (across.y * u + down.y * v + along.y * w);
-      packet.org_z[i] = basis.origin.z + (across.z * u + down.z * v + along.z * w);
+      const Vec3f origin = basis.origin + (across * u + down * v + along * w);
+      const bool sound = is_sound(origin);
+      packet.org_x[i] = sound ? origin.x : 0;
+      packet.org_y[i] = sound ? origin.y : 0;
+      packet.org_z[i] = sound ? origin.z : 0;
       packet.dir_x[i] = basis.axis[2].x;
       packet.dir_y[i] = basis.axis[2].y;
       packet.dir_z[i] = basis.axis[2].z;
-      packet.tfar[i] = std::numeric_limits<float>::infinity();
+      packet.tnear[i] = sound ? 0.0f : 1.0f;  // a ray that ends before it starts is left out
+      packet.tfar[i] = sound ? std::numeric_limits<float>::infinity() : 0.0f;
     }
+  }
+
+  /// Damaged files have surfaces anywhere; Embree's assertions end the program where its own
+  /// bounds of coordinates are passed.
+  static bool is_sound(const Vec3f& origin) {
+    constexpr float kLargest = 1e18f;
+    return std::abs(origin.x) <= kLargest && std::abs(origin.y) <= kLargest &&
+           std::abs(origin.z) <= kLargest;
   }
 
   alignas(64) RTCRay16 packets_[kPackets];
