@@ -5,6 +5,7 @@
 
 #include <memory>
 
+#include "common/trace/renderer.h"
 #include "common/trace/technique.h"
 #include "formats/mdk_writer.h"
 #include "tests/formats/sample_model.h"
@@ -61,6 +62,35 @@ TEST(HandPose, PastALimitThePictureIsTracedByBoxesOfThisPoseAlone) {
   state.hand.beyond_limits = true;
   turn_joint(state.hand, state.model()->skeleton, {3, 0, 0});
   EXPECT_EQ(picture_job(state, 8, 8).technique, technique_row("refit-bvh"));
+}
+
+TEST(HandPose, APickIsTheTriangleThatThePosedPictureShows) {
+  const ModelStorage storage = sample_skeleton_model();
+  const Model model = storage.view();
+  HandPose hand = rest_pose_of(model);
+  turn_joint(hand, model.skeleton, {0.3, 0.2, 0.1});
+  FrameRequest request;
+  request.width = 48;
+  request.height = 32;
+  request.camera = fit_camera(model.bounds, 1.5);
+  request.pose = &hand.pose;
+  Renderer renderer(model, "refit-bvh");
+  renderer.trace(request);
+  ASSERT_GT(renderer.stats().hits, 0u);
+  const Moment moment{{}, hand.pose};
+  const PictureRays picture{request.camera, request.width, request.height};
+  for (std::uint32_t y = 0; y < request.height; ++y)
+    for (std::uint32_t x = 0; x < request.width; ++x) {
+      const auto pick = pick_triangle(model, moment, picture, x, y);
+      EXPECT_EQ(pick ? pick->triangle : kNoHit, renderer.hits().triangle(x, y)) << x << " " << y;
+    }
+  const PosedMesh mesh = mesh_at(model, moment);
+  const ClusterPlaces places = cluster_places(model, moment);
+  for (std::uint32_t c = 0; c < model.cluster_count(); ++c)
+    EXPECT_EQ(places.local_from_world[c], mesh.cluster_map(c));
+  for (std::size_t i = 0; i < 3; ++i)
+    EXPECT_EQ(corners_at(model, moment, 0)[i],
+              to_double(mesh.positions()[model.triangles[0].v[i]]));
 }
 
 }  // namespace
