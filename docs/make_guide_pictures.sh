@@ -28,6 +28,11 @@ click() {
   # shellcheck disable=SC2046  # two words
   xdotool mousemove $(at "$@") sleep 0.3 click 1 sleep 0.5
 }
+drag() {  # along a widget: drag WIDGET FROM TO, parts of its width
+  # shellcheck disable=SC2046  # two words each
+  xdotool mousemove $(at "$1" "$2" 0.5) sleep 0.2 mousedown 1 sleep 0.2 \
+    mousemove $(at "$1" "$3" 0.5) sleep 0.3 mouseup 1 sleep 0.3
+}
 # picture NAME OPTION... -- STEP...: docs/images/viewer-NAME.png after the steps, each a command.
 picture() {
   local name=$1 options=()
@@ -35,7 +40,7 @@ picture() {
   while [[ "$1" != -- ]]; do options+=("$1"); shift; done
   shift
   "${view[@]}" "${options[@]}" --quit-after 2 --print-state > "$work/widgets.json"
-  "${view[@]}" "${options[@]}" --screenshot "docs/images/viewer-$name.png" &
+  "${view[@]}" "${options[@]}" --no-state --screenshot "docs/images/viewer-$name.png" &
   local viewer=$!
   xdotool search --sync --onlyvisible --name mdview > "$work/window"
   sleep 1.5
@@ -49,3 +54,10 @@ picture compare --compare wipe --technique fuzzy-bvh --against refit-bvh --tab c
 picture pick --tab pick -- "click picture 0.5 0.56" "xdotool mousemove 5 5 sleep 0.3"
 picture clusters --tab clusters --shading clusters -- "click local-boxes" \
   "xdotool mousemove $(printf '%s' "\$(at cluster:3)") sleep 0.5"
+picture view -- "xdotool mousemove 5 5 sleep 0.3"
+picture time-line -- "xdotool sleep 4 key 2 sleep 5 key 4 sleep 5 key 1 sleep 3" \
+  "drag range-lane 0.3 0.7" "xdotool mousemove 5 5 sleep 0.3"
+picture light --theme light --tab file --shading lit --samples 4 -- "xdotool mousemove 5 5 sleep 0.3"
+# The empty window: the same without a file.
+view=("$bin/mdview" --size 1280x800)
+picture start -- "xdotool mousemove 5 5 sleep 0.3"

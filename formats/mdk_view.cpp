@@ -99,6 +99,7 @@ MdkFile& MdkFile::operator=(MdkFile&&) noexcept = default;
 
 const Model& MdkFile::model() const { return state_->model; }
 const std::string& MdkFile::path() const { return state_->path; }
+std::span<const std::byte> MdkFile::bytes() const { return state_->file.bytes(); }
 std::uint64_t MdkFile::file_bytes() const { return state_->file.bytes().size(); }
 
 MdkOrigin MdkFile::origin() const {

@@ -2,8 +2,10 @@
 // point into the mapping (docs/file-format.md).
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -32,6 +34,8 @@ class MdkFile {
   const Model& model() const;
   const std::string& path() const;
   std::uint64_t file_bytes() const;
+  /// The whole image, as it stands in the file.
+  std::span<const std::byte> bytes() const;
   /// What made it, where the file says so.
   MdkOrigin origin() const;
   std::vector<MdkSectionInfo> sections() const;

@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "common/trace/technique.h"
-#include "formats/image_writer.h"
 #include "viewer/panel/comparison_view.h"
 #include "viewer/panel/overlays.h"
 #include "viewer/panel/picture_lines.h"
@@ -17,7 +16,6 @@
 #include "viewer/panel/time_line.h"
 #include "viewer/picture/picture_job.h"
 #include "viewer/state/picture_mouse.h"
-#include "viewer/state_report.h"
 
 namespace mdk {
 namespace {
@@ -26,6 +24,7 @@ constexpr double kDrawSeconds = 1.0 / 60;     // never drawn more often
 constexpr double kPlayingSeconds = 1.0 / 30;  // the play head moves although the picture is late
 constexpr double kIdleSeconds = 1.0;
 constexpr double kNoticeSeconds = 4;
+constexpr double kCurveSeconds = 0.2;     // between drawings of a growing curve
 constexpr double kTurntableSeconds = 14;  // once round
 constexpr double kLookSeconds = 0.5;      // between looks at the files on disk
 
@@ -33,21 +32,27 @@ constexpr double kLookSeconds = 0.5;      // between looks at the files on disk
 
 App::App(const ViewerOptions& options)
     : options_(options),
-      window_(options.size.value_or(WindowSize{}),
-              options.size ? SizeUnit::kExact : SizeUnit::kScaled),
+      session_path_(session_path(options)),
+      saved_(read_session(session_path_)),
+      window_(options.size.value_or(saved_.window.value_or(WindowSize{})),
+              options.size || saved_.window ? SizeUnit::kExact : SizeUnit::kScaled),
       theme_(make_theme(window_.ui_scale(), window_.pixel_ratio())),
       loader_(&Window::wake),
+      export_(&Window::wake),
       worker_(&Window::wake) {
+  recall();
   if (!options_.technique.empty()) state_.settings.technique = technique_row(options_.technique);
-  state_.settings.shading = options_.shading;
-  state_.settings.colors = options_.colors;
+  if (options_.shading) state_.settings.shading = *options_.shading;
+  if (options_.colors) state_.settings.colors = *options_.colors;
   state_.settings.samples = options_.samples;
   state_.settings.occlusion_rays = options_.occlusion_rays;
   state_.tab = options_.tab;
   state_.compare.mode = options_.compare;
   state_.compare.against =
       options_.against.empty() ? default_against() : technique_row(options_.against);
-  if (!options_.file.empty()) loader_.load({options_.file});
+  if (options_.random_events > 0)
+    hand_.emplace(options_.random_events, options_.seed, what_lies_here());
+  if (!options_.file.empty()) open({options_.file});
 }
 
 void App::show_loaded_scene() {
@@ -63,6 +68,7 @@ void App::show_loaded_scene() {
   state_.path = scene->path;
   state_.file_name = std::filesystem::path(scene->path).filename().string();
   state_.forget_frames();
+  costs_wait_ = true;
   state_.error.clear();
   shown_.clear();
   state_.clusters = ClusterView(state_.file->model());
@@ -77,6 +83,10 @@ void App::show_loaded_scene() {
     return;
   }
   state_.playback = Playback(clip_times(state_.file->model()));
+  state_.playback.set_loop(saved_.loop);
+  state_.playback.set_speed(saved_.speed);
+  remember_file(state_.recent_files, loader_.paths());
+  remember();
   state_.hand = rest_pose_of(state_.file->model());
   blit_.clear();
   reset_view();
@@ -121,13 +131,16 @@ int App::run() {
     const double now = clock_.seconds();
     pass_time(now - last_event_time_);
     last_event_time_ = now;
+    if (hand_) play_random_event();
     handle_events();
     look_for_changes();
     show_loaded_scene();
     show_finished_frame();
+    show_export();
     update_shown_rate();
     expire_notice();
     if (draw_is_due()) draw();
+    survey_costs();
     if (scripted() && frames_shown_ >= options_.quit_after) quit_ = true;
   }
   finish();
@@ -141,17 +154,28 @@ void App::pass_time(double seconds) {
 }
 
 void App::handle_events() {
-  if (window_.take_activity()) redraws_ = kSettlingDraws;
+  if (window_.take_activity()) {
+    redraws_ = kSettlingDraws;
+    last_activity_time_ = clock_.seconds();
+    costs_wait_ = true;
+  }
   for (const KeyEvent& event : window_.take_keys())
     if (const auto action = action_for(event)) execute(*action);
-  if (auto drops = window_.take_drops(); !drops.empty()) loader_.load(std::move(drops));
+  if (const auto drops = window_.take_drops(); !drops.empty()) {
+    state_.file_menu.reset();
+    open(drops);
+  }
 }
 
 void App::show_finished_frame() {
   auto frame = worker_.take_finished();
   if (!frame || frame->job.file != state_.file) return;
-  redraws_ = std::max(redraws_, 1);
   const RenderJob& job = frame->job;
+  if (job.survey && frame->error.empty()) {
+    survey_.take(*frame, state_.cost_curves);
+    return;
+  }
+  redraws_ = std::max(redraws_, 1);
   if (!frame->error.empty()) {
     requests_.note_failure();
     show_error(Error(ErrorCode::kInternal, frame->error));
@@ -190,10 +214,12 @@ void App::expire_notice() {
 }
 
 RenderJob App::wanted_job() const {
+  return job_at_divisor(picture_divisor(state_.settings.resolution, motion_, full_picture_ms_));
+}
+
+RenderJob App::job_at_divisor(std::uint32_t divisor) const {
   PixelRect room = picture_pixels();
   if (state_.compare.mode == CompareMode::kSideBySide) room.width /= 2;
-  const std::uint32_t divisor =
-      picture_divisor(state_.settings.resolution, motion_, full_picture_ms_);
   return picture_job(state_, std::max(1u, static_cast<std::uint32_t>(room.width) / divisor),
                      std::max(1u, static_cast<std::uint32_t>(room.height) / divisor));
 }
@@ -206,6 +232,28 @@ bool App::request_picture(Repeat repeat) {
   auto job = requests_.next(wanted_job(), situation);
   if (job) worker_.request(std::move(*job));
   return job.has_value();
+}
+
+void App::survey_costs() {
+  const bool at_rest = !state_.moves() && motion_ == Motion::kStill && !state_.hand.active &&
+                       !worker_.busy() && redraws_ == 0;
+  if (!state_.file || scripted() || requests_.failed() || state_.settings.keep_tracing) return;
+  if (!at_rest || clock_.seconds() < last_activity_time_ + CostSurvey::kRestSeconds) return;
+  const Playback& playback = state_.playback;
+  const std::size_t technique = state_.settings.technique;
+  const std::uint32_t divisor =
+      picture_divisor(Resolution::kAuto, Motion::kDragging, full_picture_ms_);
+  auto job = survey_.next(job_at_divisor(divisor), static_cast<std::uint32_t>(playback.clip()),
+                          playback.clips()[playback.clip()].key_times, state_.cost_curves);
+  costs_wait_ = job.has_value();
+  if (job) worker_.request(std::move(*job));
+  // The curve is seen to grow, but drawing takes no time from measuring.
+  const std::size_t known = state_.cost_curves.known(technique);
+  const double now = clock_.seconds();
+  if (known != costs_drawn_ && (!job || now >= last_draw_time_ + kCurveSeconds)) {
+    costs_drawn_ = known;
+    redraws_ = 1;
+  }
 }
 
 // Waits for the picture of the state as it is, so that what is printed and saved belongs together.
@@ -246,6 +294,7 @@ double App::seconds_to_wait() const {
   const double since_draw = clock_.seconds() - last_draw_time_;
   if (redraws_ > 0 || scripted()) return std::max(0.0, kDrawSeconds - since_draw);
   if (state_.moves()) return std::max(0.0, kPlayingSeconds - since_draw);
+  if (costs_wait_ && state_.file) return CostSurvey::kRestSeconds;
   return state_.notice.empty() ? kIdleSeconds : kNoticeSeconds / 8;
 }
 
@@ -283,24 +332,14 @@ void App::draw() {
   widgets_ = std::move(result.widgets);
   if (save_window_) save_window();
   for (const Action& action : result.actions) execute(action);
+  if (!result.open_paths.empty()) open(result.open_paths);
   request_picture(Repeat::kAsChosen);
   window_.present();
+  if (first_picture_ms_ == 0 && !shown_.picture().pixels.empty())
+    first_picture_ms_ = since_start_.milliseconds();
   // A scripted run with nothing to trace still comes to its end.
   const bool nothing_comes = !loader_.busy() && (!state_.file || requests_.failed());
   if (scripted() && nothing_comes) ++frames_shown_;
-}
-
-void App::finish() {
-  if (!options_.screenshot.empty() || options_.print_state) settle();
-  if (!options_.screenshot.empty()) {
-    for (int i = 0; i < kSettlingDraws; ++i) draw();  // the last frame's figures, settled
-    const Picture picture = window_.read_pixels();
-    write_png(options_.screenshot, picture.width, picture.height, picture.pixels);
-  }
-  if (options_.print_state)
-    std::cout << state_json(state_, {frames_shown_, window_draws_, window_.width(),
-                                     window_.height(), widgets_, render_command_of_picture()})
-              << std::endl;
 }
 
 }  // namespace mdk

@@ -13,10 +13,14 @@
 #include "viewer/options.h"
 #include "viewer/panel/side_panel.h"
 #include "viewer/panel/style.h"
+#include "viewer/picture/cost_survey.h"
 #include "viewer/picture/render_worker.h"
 #include "viewer/picture/request_policy.h"
 #include "viewer/picture/resolution.h"
+#include "viewer/picture/sequence_export.h"
 #include "viewer/picture/shown_picture.h"
+#include "viewer/random_hand.h"
+#include "viewer/saved_session.h"
 #include "viewer/scene/scene_loader.h"
 #include "viewer/state/view_state.h"
 #include "viewer/window/texture_blit.h"
@@ -43,6 +47,15 @@ class App {
   void show_error(const Error& error);
   void show_notice(const std::string& sentence);
 
+  void open(const std::vector<std::string>& paths);
+  void export_sequence();
+  void show_export();
+  void keep_baked();
+  void recall();
+  void remember() const;
+  void play_random_event();
+  static std::vector<std::string> what_lies_here();
+
   void pass_time(double seconds);
   void handle_events();
   void execute(const Action& action);
@@ -54,9 +67,11 @@ class App {
   void expire_notice();
 
   RenderJob wanted_job() const;
+  RenderJob job_at_divisor(std::uint32_t divisor) const;
   enum class Repeat { kNever, kAsChosen };
   bool request_picture(Repeat repeat);  // whether there was one to ask for
   void settle();
+  void survey_costs();
 
   Layout layout() const;
   PixelRect picture_pixels() const;
@@ -73,7 +88,10 @@ class App {
   bool scripted() const { return options_.quit_after > 0; }
   void finish();
 
+  Stopwatch since_start_;
   ViewerOptions options_;
+  std::string session_path_;  ///< empty: nothing is kept
+  SavedSession saved_;
   Window window_;
   Theme theme_;
   TextureBlit blit_;
@@ -81,7 +99,7 @@ class App {
   WidgetMap widgets_;
   ErrorCode error_code_ = ErrorCode::kInternal;  ///< of state_.error, where one stands
 
-  Stopwatch clock_;             ///< since the start
+  Stopwatch clock_;             ///< since the window opened
   double last_event_time_ = 0;  ///< when time was last let pass
   double last_draw_time_ = -1;
   double notice_until_ = 0;
@@ -91,12 +109,19 @@ class App {
   bool quit_ = false, save_window_ = false, options_applied_ = false;
 
   RequestPolicy requests_;
-  double full_picture_ms_ = 0;  ///< the last frame's time, scaled to full resolution
+  CostSurvey survey_;
+  bool costs_wait_ = true;         ///< there may be something to measure, once nobody acts
+  std::size_t costs_drawn_ = 0;    ///< known moments of the technique at the last drawing of them
+  double last_activity_time_ = 0;  ///< of the user
+  double full_picture_ms_ = 0;     ///< the last frame's time, scaled to full resolution
   ShownPicture shown_;
   std::deque<double> shown_times_;
   std::uint64_t frames_shown_ = 0, window_draws_ = 0;
 
+  std::optional<RandomHand> hand_;
+  double first_picture_ms_ = 0;  ///< from the program's start; 0: none yet
   SceneLoader loader_;
+  SequenceExport export_;
   RenderWorker
       worker_;  ///< last, with the loader: they go first, while the window still can be woken
 };

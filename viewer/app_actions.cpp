@@ -1,10 +1,12 @@
 // App: what keys, buttons and menus ask for.
 #include <filesystem>
 
+#include "formats/atomic_file.h"
 #include "formats/image_writer.h"
 #include "viewer/app.h"
 #include "viewer/picture/picture_name.h"
 #include "viewer/picture/render_command.h"
+#include "viewer/scene/folder_list.h"
 
 namespace mdk {
 
@@ -60,8 +62,32 @@ void App::execute(const Action& action) {
     case Command::kCopyCommand:
       if (state_.file) copy_render_command();
       break;
+    case Command::kExport:
+      export_sequence();
+      break;
+    case Command::kCancelExport:
+      export_.cancel();
+      break;
+    case Command::kToggleFileMenu:
+      if (state_.file_menu)
+        state_.file_menu.reset();
+      else
+        state_.file_menu = FileMenu{"Open", state_.recent_files, ""};
+      break;
+    case Command::kKeepBaked:
+      keep_baked();
+      break;
     case Command::kCancelBake:
       loader_.cancel();
+      break;
+    case Command::kBeginRange:
+      playback.begin_range_here();
+      break;
+    case Command::kEndRange:
+      playback.end_range_here();
+      break;
+    case Command::kClearRange:
+      playback.clear_range();
       break;
     case Command::kToggleTurntable:
       state_.turntable = !state_.turntable;
@@ -79,15 +105,19 @@ void App::execute(const Action& action) {
     case Command::kDismiss:
       if (state_.help_open)
         state_.help_open = false;
+      else if (state_.file_menu)
+        state_.file_menu.reset();
       else if (!state_.error.empty())
         state_.error.clear();
       else if (state_.baking)
         loader_.cancel();
+      else if (export_.busy())
+        export_.cancel();
       else
-        quit_ = true;
+        quit_ = !hand_;
       break;
     case Command::kQuit:
-      quit_ = true;
+      quit_ = !hand_;  // which would end its test early
       break;
   }
 }
@@ -112,6 +142,74 @@ void App::copy_render_command() {
       command.empty()
           ? "No mdprep command makes this picture: it is posed by hand, or parts are left out"
           : "Copied the mdprep command that renders this picture");
+}
+
+void App::open(const std::vector<std::string>& paths) {
+  std::error_code failure;
+  if (paths.size() != 1 || !std::filesystem::is_directory(paths.front(), failure)) {
+    loader_.load(paths);
+    return;
+  }
+  try {
+    const std::string& folder = paths.front();
+    std::vector<FileChoice> choices = animations_in(folder);
+    if (choices.empty())
+      throw Error(ErrorCode::kBadInput,
+                  folder +
+                      ": this folder holds no animation; .mdk, .glb, .gltf, and .obj or .ply "
+                      "with a point cache or one for each key are opened");
+    if (choices.size() == 1)
+      loader_.load(choices.front().paths);
+    else
+      state_.file_menu = FileMenu{folder, std::move(choices), ""};
+  } catch (const Error& error) {
+    show_error(error);
+  }
+}
+
+void App::export_sequence() {
+  if (!state_.file || export_.busy()) return;
+  if (state_.hand.active) {
+    show_notice("Only clips are exported: the model is posed by hand");
+    return;
+  }
+  const Playback& playback = state_.playback;
+  const TimeRange played = playback.played();
+  ExportOrder order;
+  order.picture = job_at_divisor(1);
+  order.keys = keys_within(state_.file->model(), static_cast<std::uint32_t>(playback.clip()),
+                           played.begin, played.end);
+  order.kind = state_.export_settings.kind;
+  order.stem = std::filesystem::path(state_.file_name).stem().string();
+  export_.start(std::move(order));
+}
+
+void App::show_export() {
+  state_.exporting = export_.progress();
+  const auto result = export_.take_result();
+  if (!result) return;
+  if (result->error)
+    show_error(*result->error);
+  else
+    show_notice(result->sentence);
+}
+
+void App::keep_baked() {
+  if (!state_.file) return;
+  const auto beside = std::filesystem::path(state_.path).replace_extension(".mdk");
+  std::error_code ignored;
+  if (std::filesystem::exists(beside, ignored)) {
+    show_notice(beside.string() + " is there already");
+    return;
+  }
+  try {
+    AtomicFile file(beside.string());
+    file.write(state_.file->bytes());
+    file.commit();
+    show_notice("Saved " + beside.string() + "; it opens at once");
+  } catch (const Error& error) {
+    show_error(error);
+  }
 }
 
 void App::save_picture() {

@@ -31,8 +31,13 @@ constexpr std::array kBindings = {
     Binding{0, 'p', Command::kSavePicture},
     Binding{0, 'P', Command::kSaveWindow},
     Binding{0, 'c', Command::kCopyCommand},
+    Binding{0, 'i', Command::kBeginRange},
+    Binding{0, 'o', Command::kEndRange},
+    Binding{0, 'x', Command::kClearRange},
     Binding{0, 't', Command::kToggleTurntable},
     Binding{0, 'd', Command::kToggleColors},
+    Binding{0, 'e', Command::kExport},
+    Binding{0, 'l', Command::kToggleFileMenu},
     Binding{GLFW_KEY_TAB, 0, Command::kTogglePanel},
     Binding{GLFW_KEY_F1, '?', Command::kToggleHelp},
     Binding{GLFW_KEY_ESCAPE, 0, Command::kDismiss},
@@ -42,7 +47,9 @@ constexpr std::array kBindings = {
 constexpr std::array kHelp = {
     ShortcutHelp{"Space", "play or pause"},
     ShortcutHelp{"Left / Right", "previous or next key"},
-    ShortcutHelp{"Home / End", "start or end of the clip"},
+    ShortcutHelp{"Home / End", "start or end of the range, else of the clip"},
+    ShortcutHelp{"I / O", "a range to play begins or ends here"},
+    ShortcutHelp{"X", "no range: play all of the clip"},
     ShortcutHelp{"Up / Down or [ ]", "previous or next technique"},
     ShortcutHelp{"1 to 9", "technique by number"},
     ShortcutHelp{"S", "next shading"},
@@ -54,16 +61,52 @@ constexpr std::array kHelp = {
     ShortcutHelp{"P", "save the picture as PNG"},
     ShortcutHelp{"Shift + P", "save the whole window as PNG"},
     ShortcutHelp{"C", "copy the mdprep render command of the picture"},
+    ShortcutHelp{"E", "export the range, else the clip, as pictures or film"},
+    ShortcutHelp{"L", "load: recent files, or a path"},
     ShortcutHelp{"D", "dark or light"},
     ShortcutHelp{"Tab", "show or hide the panel"},
     ShortcutHelp{"? or F1", "this list"},
-    ShortcutHelp{"Esc", "close this list or a message, cancel a bake; quit"},
+    ShortcutHelp{"Esc", "close what stands open, cancel a bake or export; quit"},
     ShortcutHelp{"Q", "quit"},
     ShortcutHelp{"Click", "pick the triangle"},
     ShortcutHelp{"Left drag", "orbit"},
     ShortcutHelp{"Middle, right or Shift drag", "pan"},
     ShortcutHelp{"Wheel", "zoom to the pointer"},
 };
+
+const char* name_of_key(int key) {
+  switch (key) {
+    case GLFW_KEY_SPACE:
+      return "Space";
+    case GLFW_KEY_LEFT:
+      return "Left";
+    case GLFW_KEY_RIGHT:
+      return "Right";
+    case GLFW_KEY_UP:
+      return "Up";
+    case GLFW_KEY_DOWN:
+      return "Down";
+    case GLFW_KEY_HOME:
+      return "Home";
+    case GLFW_KEY_END:
+      return "End";
+    case GLFW_KEY_TAB:
+      return "Tab";
+    case GLFW_KEY_F1:
+      return "F1";
+    case GLFW_KEY_ESCAPE:
+      return "Esc";
+    default:
+      return "a key without a name";
+  }
+}
+
+std::string name_of_character(unsigned character) {
+  const auto sign = static_cast<char>(character);
+  if (sign >= 'a' && sign <= 'z') return {static_cast<char>(sign - 'a' + 'A')};
+  if (sign >= 'A' && sign <= 'Z') return std::string("Shift + ") + sign;
+  return {sign};
+}
 
 }  // namespace
 
@@ -75,6 +118,15 @@ std::optional<Action> action_for(const KeyEvent& event) {
   if (event.key >= GLFW_KEY_1 && event.key <= GLFW_KEY_9)
     return Action{Command::kTechniqueByNumber, static_cast<std::size_t>(event.key - GLFW_KEY_1)};
   return {};
+}
+
+std::vector<std::string> bound_keys() {
+  std::vector<std::string> names;
+  for (const Binding& binding : kBindings) {
+    if (binding.key != 0) names.emplace_back(name_of_key(binding.key));
+    if (binding.character != 0) names.push_back(name_of_character(binding.character));
+  }
+  return names;
 }
 
 std::span<const ShortcutHelp> shortcut_help() { return kHelp; }

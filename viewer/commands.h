@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <optional>
 #include <span>
+#include <string>
+#include <vector>
 
 namespace mdk {
 
@@ -25,12 +27,19 @@ enum class Command {
   kSavePicture,
   kSaveWindow,
   kCopyCommand,  ///< the mdprep render command line of the picture, to the clipboard
+  kExport,       ///< the range, else the clip
+  kCancelExport,
+  kToggleFileMenu,
+  kKeepBaked,  ///< writes what was baked beside its source
   kCancelBake,
+  kBeginRange,  ///< at the present time
+  kEndRange,
+  kClearRange,
   kToggleTurntable,
   kToggleColors,
   kTogglePanel,
   kToggleHelp,
-  kDismiss,  ///< closes help or the error that stands, or cancels a bake; else quits
+  kDismiss,  ///< closes what stands open, or cancels what is in work; else quits
   kQuit,
 };
 
@@ -47,6 +56,9 @@ struct KeyEvent {
 };
 
 std::optional<Action> action_for(const KeyEvent& event);
+
+/// Every key and character that does something, by the name the help gives it, digits aside.
+std::vector<std::string> bound_keys();
 
 struct ShortcutHelp {
   const char* keys;

@@ -100,7 +100,8 @@ std::optional<ViewerOptions> parse_options(int argc, const char* const* argv, st
                  "files can also be dropped on the window");
   app.add_option("--size", size, "window size WxH (1280x800)");
   app.add_option("--technique", options.technique, "technique to start with, by id");
-  app.add_option("--shading", shading, "shading mode to start with, by id (diffuse)");
+  app.add_option("--shading", shading,
+                 "shading mode to start with, by id (as it was last; at first diffuse)");
   app.add_option("--samples", options.samples, "samples per pixel (1)")
       ->check(CLI::Range(1u, kMostSamples));
   app.add_option("--ao", options.occlusion_rays,
@@ -109,7 +110,7 @@ std::optional<ViewerOptions> parse_options(int argc, const char* const* argv, st
       ->check(CLI::Range(0u, kMostOcclusionRays));
   app.add_option("--clip", options.clip, "animation to show, by name (the first)");
   app.add_option("--time", options.time, "seconds from the clip's start (0)");
-  app.add_option("--theme", theme, "dark or light (dark)");
+  app.add_option("--theme", theme, "dark or light (as it was last; at first dark)");
   app.add_flag("--play", play, "start playing");
   app.add_option("--camera", camera,
                  "ten numbers: eye xyz, target xyz, up xyz, vertical field of view in degrees");
@@ -122,6 +123,13 @@ std::optional<ViewerOptions> parse_options(int argc, const char* const* argv, st
   app.add_option("--screenshot", options.screenshot,
                  "write the whole window as PNG at the end (with --quit-after)");
   app.add_option("--quit-after", options.quit_after, "quit when N rendered frames were shown");
+  app.add_option("--state", options.state_file,
+                 "keep recent files and settings in this file (mdview/session.json in "
+                 "$XDG_STATE_HOME or ~/.local/state)");
+  app.add_flag("--no-state", options.no_state,
+               "neither recall nor keep anything (so it is with --print-state and --quit-after)");
+  app.add_option("--random-events", options.random_events, "")->group("");
+  app.add_option("--seed", options.seed, "")->group("");
   app.add_flag("--print-state", options.print_state, "print one JSON object on stdout at the end");
 
   try {

@@ -25,11 +25,11 @@ struct WindowSize {
 enum class StartMode { kPaused, kPlaying };
 
 struct ViewerOptions {
-  std::string file;                ///< empty: start without one
-  std::optional<WindowSize> size;  ///< none: 1280x800, enlarged on dense displays
-  std::string technique;           ///< empty: the table's first
-  ShadingMode shading = ShadingMode::kDiffuse;
-  ColorScheme colors = ColorScheme::kDark;
+  std::string file;                    ///< empty: start without one
+  std::optional<WindowSize> size;      ///< none: 1280x800, enlarged on dense displays
+  std::string technique;               ///< empty: as it was last, or the table's first
+  std::optional<ShadingMode> shading;  ///< none: as it was last, or diffuse
+  std::optional<ColorScheme> colors;   ///< none: as it was last, or dark
   std::uint32_t samples = 1;
   std::uint32_t occlusion_rays = kOcclusionRays;
   std::string clip;  ///< empty: the file's first
@@ -44,6 +44,10 @@ struct ViewerOptions {
   PanelTab tab = PanelTab::kView;
   std::uint64_t quit_after = 0;  ///< finished frames shown; 0: stay
   bool print_state = false;
+  std::string state_file;           ///< what to remember is kept there; empty: in the usual place
+  bool no_state = false;            ///< nothing is remembered, and nothing recalled
+  std::uint64_t random_events = 0;  ///< done to the window before the end; 0: none
+  std::uint64_t seed = 1;           ///< of them
 };
 
 /// Reads the command line; empty where it only asked for help or the version, which went to `out`.

@@ -116,6 +116,23 @@ const char* resolution_id(Resolution resolution) {
   return "";
 }
 
+Json cost_json(const CostCurves& costs) {
+  Json json = Json::object();
+  for (std::size_t t = 0; t < costs.technique_count(); ++t)
+    if (costs.known(t) > 0)
+      json[std::string(technique_table()[t].id)] = {{"moments", costs.moments().size()},
+                                                    {"known", costs.known(t)},
+                                                    {"longest_ms", costs.longest_ms(t)}};
+  return json;
+}
+
+Json menu_json(const ViewState& state) {
+  if (!state.file_menu) return nullptr;
+  Json labels = Json::array();
+  for (const FileChoice& choice : state.file_menu->choices) labels.push_back(choice.label);
+  return labels;
+}
+
 Json hand_json(const ViewState& state) {
   if (!state.hand.active) return nullptr;
   const SkeletonView& skeleton = state.model()->skeleton;
@@ -132,6 +149,11 @@ std::string state_json(const ViewState& state, const WindowReport& window) {
   const Playback& playback = state.playback;
   Json json = {{"schema", "mdview-state/1"}};
   json["file"] = state.file ? Json(state.path) : Json();
+  json["exporting"] = state.exporting ? Json(state.exporting->fraction) : Json();
+  json["recent_files"] = Json::array();
+  for (const FileChoice& choice : state.recent_files)
+    json["recent_files"].push_back(choice.paths.front());
+  json["file_menu"] = menu_json(state);
   json["baking"] = state.baking ? Json(state.baking->name) : Json();
   json["technique"] = technique_table()[state.settings.technique].id;
   json["shading"] = shading_id(state.settings.shading);
@@ -141,6 +163,9 @@ std::string state_json(const ViewState& state, const WindowReport& window) {
   json["playing"] = playback.playing();
   json["loop"] = loop_id(playback.loop());
   json["speed"] = playback.speed();
+  const auto& range = playback.range();
+  json["range"] = range ? Json{range->begin, range->end} : Json();
+  json["cost_curves"] = cost_json(state.cost_curves);
   json["resolution"] = resolution_id(state.settings.resolution);
   json["theme"] = state.settings.colors == ColorScheme::kDark ? "dark" : "light";
   json["turntable"] = state.turntable;
@@ -154,6 +179,9 @@ std::string state_json(const ViewState& state, const WindowReport& window) {
   json["overlays"] = overlays_json(state.overlays);
   json["frames_shown"] = window.frames_shown;
   json["window_draws"] = window.window_draws;
+  json["first_picture_ms"] = window.first_picture_ms > 0 ? Json(window.first_picture_ms) : Json();
+  const auto median = state.history.median_ms(state.settings.technique);
+  json["median_time_to_image_ms"] = median ? Json(*median) : Json();
   json["last_frame"] = frame_json(state);
   json["help"] = state.help_open;
   json["panel"] = state.panel == PanelMode::kShown;

@@ -14,7 +14,8 @@ struct WindowReport {
   std::uint64_t frames_shown = 0, window_draws = 0;
   float width = 0, height = 0;
   WidgetMap widgets;
-  std::string render_command;  ///< makes the picture again, with mdprep
+  double first_picture_ms = 0;  ///< after the program began; 0: none was shown
+  std::string render_command;   ///< makes the picture again, with mdprep
 };
 
 /// One line. Names are stable; times in seconds, stats as in `mdprep bench --json`; what is not

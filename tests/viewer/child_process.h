@@ -26,6 +26,8 @@ class ChildProcess {
   ChildProcess& operator=(const ChildProcess&) = delete;
 
   bool running();
+  /// Processor time it has taken so far, in seconds, all of its threads.
+  double cpu_seconds() const;
   /// Its exit status, or 128 + the signal that ended it; empty where it still runs after `seconds`.
   std::optional<int> wait(double seconds);
 

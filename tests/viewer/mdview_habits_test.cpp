@@ -3,8 +3,11 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <cstdlib>
+#include <filesystem>
 
 #include "tests/viewer/mdview_gui.h"
+#include "tests/viewer/x_drop.h"
 
 namespace mdk::test {
 namespace {
@@ -50,6 +53,149 @@ TEST_F(MdviewGui, TheTurntableGoesRoundAtTheSameDistance) {
   EXPECT_NEAR(length(eye), 9, 1e-3);
   EXPECT_NEAR(eye.y, 0, 1e-4);
   EXPECT_GT(std::abs(eye.x), 1);
+}
+
+TEST_F(MdviewGui, RemembersFromRunToRunWithAStateFile) {
+  const std::vector<std::string> words = {"bar.mdk", "--state", "state.json"};
+  const auto first = start(words);
+  first->wait_for_window();
+  for (const char* key : {"d", "3", "s", "Tab"}) first->key(key);
+  first->quit();
+  const auto state = start({"--state", "state.json", "--quit-after", "1"})->finish().state;
+  EXPECT_EQ(state["theme"], "light");
+  EXPECT_EQ(state["technique"], "static-kdtree");
+  EXPECT_EQ(state["shading"], "normals");
+  EXPECT_EQ(state["panel"], false);
+  ASSERT_EQ(state["recent_files"].size(), 1u);
+  EXPECT_EQ(state["recent_files"][0], folder_.file("bar.mdk"));
+  const auto asked =
+      start({"--state", "state.json", "--theme", "dark", "--quit-after", "1"})->finish().state;
+  EXPECT_EQ(asked["theme"], "dark") << "what is asked for counts";
+}
+
+TEST_F(MdviewGui, ScriptedRunsRememberNothing) {
+  start({"bar.mdk", "--theme", "light", "--quit-after", "1"})->finish();
+  const auto state = start({"--quit-after", "1"})->finish().state;
+  EXPECT_EQ(state["theme"], "dark");
+  EXPECT_TRUE(state["recent_files"].empty());
+}
+
+TEST_F(MdviewGui, ARecentFileIsOpenedFromTheMenuAndAPathCanBeTyped) {
+  start({"bar.mdk", "--state", "state.json", "--quit-after", "1"})->finish();
+  const std::vector<std::string> words = {"--state", "state.json", "--size", "1280x800"};
+  const auto look = start(words);
+  look->wait_for_window();
+  look->key("l");
+  const auto menu = look->quit().state;
+  widgets_ = menu["widgets"];
+  EXPECT_EQ(menu["file_menu"], json::array({"bar.mdk"}));
+  const auto session = start(words);
+  session->wait_for_window();
+  session->key("l");
+  session->click(in_widget("choice:0"));
+  session->xdotool({"sleep", "0.5"});
+  auto state = session->quit().state;
+  EXPECT_EQ(state["file"], folder_.file("bar.mdk"));
+  EXPECT_TRUE(state["file_menu"].is_null());
+
+  const auto typing = start(words);
+  typing->wait_for_window();
+  typing->key("l");
+  typing->click(in_widget("open-path"));
+  typing->xdotool({"type", "--delay", "60", "bar.mdk"});
+  typing->xdotool({"key", "--delay", "150", "Return"});
+  typing->xdotool({"sleep", "0.5"});
+  EXPECT_EQ(typing->quit().state["file"], "bar.mdk");
+}
+
+TEST_F(MdviewGui, ADroppedFolderIsOfferedOrOpenedOrRefused) {
+  namespace fs = std::filesystem;
+  for (const char* name : {"none", "one", "two"}) fs::create_directory(folder_.file(name));
+  fs::copy(folder_.file("bar.mdk"), folder_.file("one/bar.mdk"));
+  fs::copy(folder_.file("bar.mdk"), folder_.file("two/a.mdk"));
+  fs::copy(folder_.file("bar.mdk"), folder_.file("two/b.mdk"));
+  const auto drop = [&](const char* name) {
+    const auto session = start({"--size", "800x600"});
+    session->wait_for_window();
+    drop_file(server_->display(), "mdview", folder_.file(name));
+    session->xdotool({"sleep", "1"});
+    return session->quit().state;
+  };
+  EXPECT_EQ(drop("one")["file"], folder_.file("one/bar.mdk"));
+  EXPECT_EQ(drop("two")["file_menu"], json::array({"a.mdk", "b.mdk"}));
+  EXPECT_THAT(drop("none")["error"].get<std::string>(), HasSubstr("holds no animation"));
+}
+
+TEST_F(MdviewGui, ExportsTheRangeInTheBackground) {
+  const auto session = start_on_bar();
+  const double lane = widgets_["range-lane"][2];
+  session->drag(in_widget("range-lane", 0.2), {static_cast<int>(0.2 * lane), 0});
+  session->key("e");
+  for (int i = 0; i < 100 && !std::filesystem::exists(folder_.file("bar-frames-0001/bar_0004.png"));
+       ++i)
+    session->xdotool({"sleep", "0.1"});
+  session->xdotool({"sleep", "0.5"});
+  session->key("p");
+  const auto state = session->quit().state;
+  EXPECT_TRUE(state["exporting"].is_null());
+  EXPECT_TRUE(state["error"].is_null()) << state["error"];
+  EXPECT_TRUE(std::filesystem::exists(folder_.file("bar-frames-0001/bar_0002.png")));
+  EXPECT_FALSE(std::filesystem::exists(folder_.file("bar-frames-0001/bar_0005.png")));
+  // The first key is the picture shown at its time.
+  const auto shown = start({"bar.mdk", "--size", "1280x800", "--time", "0.2", "--quit-after", "1",
+                            "--screenshot", "window.png"})
+                         ->finish();
+  const Image frame = read_png(folder_.file("bar-frames-0001/bar_0002.png"));
+  EXPECT_EQ(frame.pixels,
+            cut_out(read_png(folder_.file("window.png")), shown.state["widgets"]["picture"]));
+}
+
+TEST_F(MdviewGui, TakesNextToNoProcessorTimeAtRest) {
+  const auto session = start_on_bar();
+  session->xdotool({"sleep", "5"});  // until the cost curve is whole
+  const double before = session->cpu_seconds();
+  session->xdotool({"sleep", "5"});
+  EXPECT_LT(session->cpu_seconds() - before, 0.25);
+  EXPECT_GT(before, 0);
+  session->quit();
+}
+
+TEST_F(MdviewGui, ThePanelKeepsItsRateWhilePicturesAreSlow) {
+  const auto session = start_on_bar({"--samples", "64", "--shading", "lit", "--threads", "1"});
+  session->key("space");
+  session->xdotool({"sleep", "3"});
+  const auto state = session->quit().state;
+  EXPECT_GT(state["window_draws"], 3 * state["frames_shown"].get<int>());
+}
+
+TEST_F(MdviewGui, GrowsOnADenseDisplay) {
+  const auto plain = start({"bar.mdk", "--size", "1280x800", "--quit-after", "1"})->finish().state;
+  set_display_density(server_->display(), 192);
+  const auto dense = start({"bar.mdk", "--size", "1280x800", "--quit-after", "1"})->finish().state;
+  EXPECT_NEAR(dense["widgets"]["play"][2].get<double>(),
+              2 * plain["widgets"]["play"][2].get<double>(), 2);
+  EXPECT_EQ(dense["window"], plain["window"]);
+}
+
+TEST_F(MdviewGui, WithoutOpenGL33ItNamesTheWayOut) {
+  ::setenv("MESA_GL_VERSION_OVERRIDE", "2.1", 1);
+  const auto result = start({"bar.mdk", "--quit-after", "1"})->finish();
+  ::unsetenv("MESA_GL_VERSION_OVERRIDE");
+  EXPECT_EQ(result.status, 4);
+  EXPECT_THAT(result.messages, HasSubstr("OpenGL 3.3"));
+  EXPECT_THAT(result.messages, HasSubstr("mdprep render"));
+}
+
+TEST_F(MdviewGui, SurvivesAFewHundredRandomEvents) {
+  write_text("bad.glb", "no model at all");
+  write_text("square.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n");
+  for (const char* seed : {"1", "2"}) {
+    const auto result =
+        start({"bar.mdk", "--size", "1000x700", "--random-events", "300", "--seed", seed})
+            ->finish();
+    EXPECT_EQ(result.status, 0) << "seed " << seed << ": " << result.messages;
+    EXPECT_GT(result.state["window_draws"], 100);
+  }
 }
 
 }  // namespace

@@ -39,6 +39,7 @@ class MdviewSession {
   void xdotool(std::vector<std::string> words);
 
   bool running() { return process_->running(); }
+  double cpu_seconds() const { return process_->cpu_seconds(); }
   /// Waits for the end. A run that does not end is a failure of the test.
   MdviewResult finish();
   /// Presses q and waits for the end.

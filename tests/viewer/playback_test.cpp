@@ -207,5 +207,90 @@ TEST(Playback, TimeNeverLeavesTheClip) {
   }
 }
 
+TEST(PlaybackRange, PlayingStaysInside) {
+  for (const LoopMode loop : {LoopMode::kOnce, LoopMode::kLoop, LoopMode::kPingPong}) {
+    Playback playback = two_clips();
+    playback.set_range(0.8, 0.2);  // in either order
+    ASSERT_EQ(playback.range(), (TimeRange{0.2, 0.8}));
+    playback.set_loop(loop);
+    playback.play();
+    EXPECT_EQ(playback.time(), 0.2) << "it begins at the range's start";
+    std::mt19937 random(7);
+    std::uniform_real_distribution<double> step(0, 0.9);
+    for (int i = 0; i < 500; ++i) {
+      playback.advance(step(random));
+      EXPECT_GE(playback.time(), 0.2);
+      EXPECT_LE(playback.time(), 0.8);
+    }
+    EXPECT_EQ(playback.playing(), loop != LoopMode::kOnce);
+  }
+}
+
+TEST(PlaybackRange, LoopsAndPingPongsByItsOwnLength) {
+  Playback playback = two_clips();
+  playback.set_range(0.2, 0.8);
+  playback.play();
+  playback.advance(0.7);  // 0.9 is 0.1 past the end
+  EXPECT_DOUBLE_EQ(playback.time(), 0.3);
+  playback.seek(0.2);
+  playback.set_loop(LoopMode::kPingPong);
+  playback.advance(0.7);
+  EXPECT_DOUBLE_EQ(playback.time(), 0.7);
+}
+
+TEST(PlaybackRange, IsClampedAndClearedAndRefusesWhatIsNoNumber) {
+  Playback playback = two_clips();
+  playback.set_range(-3, 7);
+  EXPECT_EQ(playback.range(), (TimeRange{0, 1}));
+  playback.set_range(0.1, std::nan(""));
+  EXPECT_EQ(playback.range(), (TimeRange{0, 1}));
+  playback.set_range(0.5, 0.5);
+  EXPECT_FALSE(playback.range());
+  playback.set_range(0.1, 0.4);
+  playback.go_to_end();
+  EXPECT_EQ(playback.time(), 0.4);
+  playback.set_clip(std::size_t{1});
+  EXPECT_FALSE(playback.range());
+  Playback none;
+  none.set_range(0, 1);
+  none.begin_range_here();
+  none.end_range_here();
+  EXPECT_FALSE(none.range());
+  EXPECT_EQ(none.nearest_key_time(3), 0);
+}
+
+TEST(PlaybackRange, EndsAreSetHereAndAnEndThatPassesTheOtherBeginsAnew) {
+  Playback playback = two_clips();
+  playback.seek(0.3);
+  playback.begin_range_here();
+  EXPECT_EQ(playback.range(), (TimeRange{0.3, 1}));
+  playback.seek(0.6);
+  playback.end_range_here();
+  EXPECT_EQ(playback.range(), (TimeRange{0.3, 0.6}));
+  playback.seek(0.8);
+  playback.begin_range_here();
+  EXPECT_EQ(playback.range(), (TimeRange{0.8, 1}));
+  playback.seek(0.1);
+  playback.end_range_here();
+  EXPECT_EQ(playback.range(), (TimeRange{0, 0.1}));
+}
+
+TEST(PlaybackRange, SurvivesAFileThatChangedAsFarAsTheClipReaches) {
+  Playback playback = two_clips();
+  playback.set_range(0.4, 1);
+  playback.set_clips({{"other", {0, 9}}, {"walk", {0, 0.7}}});
+  EXPECT_EQ(playback.range(), (TimeRange{0.4, 0.7}));
+  playback.set_clips({{"other", {0, 9}}});
+  EXPECT_FALSE(playback.range());
+}
+
+TEST(Playback, KnowsTheNearestKey) {
+  const Playback playback = two_clips();
+  EXPECT_EQ(playback.nearest_key_time(0.29), 0.2);
+  EXPECT_EQ(playback.nearest_key_time(0.31), 0.4);
+  EXPECT_EQ(playback.nearest_key_time(-5), 0);
+  EXPECT_EQ(playback.nearest_key_time(5), 1);
+}
+
 }  // namespace
 }  // namespace mdk

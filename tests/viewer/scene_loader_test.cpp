@@ -14,7 +14,7 @@
 #include "formats/mdk_writer.h"
 #include "tests/formats/temp_folder.h"
 #include "tests/viewer/waving_bar.h"
-#include "viewer/scene/bake_process.h"
+#include "viewer/scene/mdprep_process.h"
 
 namespace mdk::test {
 namespace {
@@ -131,14 +131,14 @@ TEST_F(SceneLoading, AFileThatChangesIsLoadedAgainAndOneThatDoesNotIsNot) {
   EXPECT_EQ(scene.file->model().triangle_count(), 3u);
 }
 
-TEST(BakeProgressText, IsReadFromTheBarAndFromNothingElse) {
+TEST(MdprepProgressText, IsReadFromTheBarAndFromNothingElse) {
   const auto bar =
-      parse_bake_progress("\x1b[K[##########--------------]  42 %  decompose, 0:12 left");
+      parse_mdprep_progress("\x1b[K[##########--------------]  42 %  decompose, 0:12 left");
   ASSERT_TRUE(bar);
   EXPECT_DOUBLE_EQ(bar->fraction, 0.42);
   EXPECT_EQ(bar->text, " 42 %  decompose, 0:12 left");
   for (const char* line : {"", "[", "[###] ", "[###] soon", "mdprep: walk.glb: is cut", "42 %"})
-    EXPECT_FALSE(parse_bake_progress(line)) << line;
+    EXPECT_FALSE(parse_mdprep_progress(line)) << line;
 }
 
 }  // namespace

@@ -112,4 +112,15 @@ void drop_file(const std::string& display, const std::string& window_name,
   DropSource(display).drop(window_name, path);
 }
 
+void set_display_density(const std::string& display, int dots_per_inch) {
+  Display* const x = XOpenDisplay(display.c_str());
+  if (!x) throw std::runtime_error("no display " + display);
+  const std::string resources = "Xft.dpi:\t" + std::to_string(dots_per_inch) + "\n";
+  XChangeProperty(x, DefaultRootWindow(x), XA_RESOURCE_MANAGER, XA_STRING, 8, PropModeReplace,
+                  reinterpret_cast<const unsigned char*>(resources.data()),
+                  static_cast<int>(resources.size()));
+  XSetCloseDownMode(x, RetainPermanent);
+  XCloseDisplay(x);
+}
+
 }  // namespace mdk::test

@@ -41,11 +41,60 @@ void draw_saving(const Theme& theme, UiResult& result) {
       result);
 }
 
+void draw_export(const Theme& theme, ViewState& state, UiResult& result) {
+  heading(theme, "EXPORT");
+  ExportSettings& settings = state.export_settings;
+  if (settings.films_possible) {
+    const auto picked =
+        segmented_buttons({{"export-pictures", "Pictures"}, {"export-film", "Film"}},
+                          static_cast<std::size_t>(settings.kind), result.widgets);
+    if (picked) settings.kind = static_cast<ExportKind>(*picked);
+  }
+  if (state.exporting) {
+    ImGui::ProgressBar(static_cast<float>(state.exporting->fraction), {-1, 6 * theme.scale}, "");
+    record(result.widgets, "export-progress");
+    button_row(
+        {{"cancel-export", "Cancel", "Takes away what was written (Esc)", Command::kCancelExport}},
+        result);
+    return;
+  }
+  const bool part = state.playback.range().has_value();
+  button_row({{"export", part ? "Export the range" : "Export the clip",
+               "Every key as seen now, by mdprep in the background, into the present folder (E)",
+               Command::kExport}},
+             result);
+}
+
+void draw_opening(const Theme& theme, const ViewState& state, UiResult& result) {
+  heading(theme, "OPEN");
+  std::vector<CommandButton> buttons = {
+      {"open", "Open or recent", "Recent files, or a path (L)", Command::kToggleFileMenu}};
+  if (state.file && !state.path.ends_with(".mdk"))
+    buttons.push_back({"keep-baked", "Keep as .mdk",
+                       "Write what was baked beside its source: that opens at once",
+                       Command::kKeepBaked});
+  button_row(buttons, result);
+}
+
+void draw_window_choices(const Theme& theme, ViewState& state, UiResult& result) {
+  heading(theme, "WINDOW");
+  const auto picked =
+      segmented_buttons({{"theme:dark", "Dark"}, {"theme:light", "Light"}},
+                        static_cast<std::size_t>(state.settings.colors), result.widgets);
+  if (picked) state.settings.colors = static_cast<ColorScheme>(*picked);
+  ImGui::Checkbox("Turntable", &state.turntable);
+  record(result.widgets, "turntable");
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("The camera goes slowly round (T)");
+}
+
 }  // namespace
 
 void draw_file_tab(const Theme& theme, ViewState& state, UiResult& result) {
   draw_facts(theme, state);
+  draw_opening(theme, state, result);
   draw_saving(theme, result);
+  draw_export(theme, state, result);
+  draw_window_choices(theme, state, result);
 }
 
 }  // namespace mdk

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <string>
 
+#include "viewer/panel/file_menu.h"
 #include "viewer/panel/ui_parts.h"
 
 namespace mdk {
@@ -37,7 +38,7 @@ void draw_welcome(const Rect& picture, const Theme& theme) {
   centered_text("To keep what is baked", theme.fonts.text, dim_color());
   centered_text("mdprep bake hand.glb -o hand.mdk", theme.fonts.text, text_color());
   ImGui::Spacing();
-  centered_text("Press ? for the keys", theme.fonts.text, dim_color());
+  centered_text("Press L for recent files, ? for the keys", theme.fonts.text, dim_color());
   ImGui::End();
 }
 
@@ -133,10 +134,12 @@ void draw_help(const Rect& picture, const Theme& theme, UiResult& result) {
 }  // namespace
 
 void draw_overlays(const Rect& picture, const Theme& theme, ViewState& state, UiResult& result) {
-  if (!state.file && !state.baking && !state.help_open) draw_welcome(picture, theme);
+  if (!state.file && !state.baking && !state.help_open && !state.file_menu)
+    draw_welcome(picture, theme);
   if (state.baking) draw_baking(picture, theme, *state.baking, result);
   if (!state.error.empty()) draw_error(picture, theme, state, result);
   if (!state.notice.empty()) draw_notice(picture, theme, state.notice);
+  draw_file_menu(picture, theme, state, result);
   if (state.help_open) draw_help(picture, theme, result);
 }
 

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdio>
 #include <string>
 
+#include "viewer/panel/time_track.h"
 #include "viewer/panel/ui_parts.h"
 
 namespace mdk {
@@ -40,17 +40,24 @@ void draw_transport(const Theme& theme, const Playback& playback, UiResult& resu
 void draw_choices(const Theme& theme, Playback& playback, UiResult& result) {
   ImGui::SameLine(0, 12 * theme.scale);
   ImGui::SetNextItemWidth(100 * theme.scale);
-  int loop = static_cast<int>(playback.loop());
-  if (ImGui::Combo("##loop", &loop, kLoops.data(), static_cast<int>(kLoops.size())))
-    playback.set_loop(static_cast<LoopMode>(loop));
+  const auto loop = static_cast<std::size_t>(playback.loop());
+  if (ImGui::BeginCombo("##loop", kLoops[loop])) {
+    for (std::size_t i = 0; i < kLoops.size(); ++i) {
+      if (ImGui::Selectable(kLoops[i], i == loop)) playback.set_loop(static_cast<LoopMode>(i));
+      record(result.widgets, "loop:" + std::to_string(i));
+    }
+    ImGui::EndCombo();
+  }
   record(result.widgets, "loop");
 
   ImGui::SameLine();
   ImGui::SetNextItemWidth(78 * theme.scale);
   if (ImGui::BeginCombo("##speed", speed_text(playback.speed()).c_str())) {
-    for (const double speed : kSpeeds)
-      if (ImGui::Selectable(speed_text(speed).c_str(), speed == playback.speed()))
-        playback.set_speed(speed);
+    for (const double speed : kSpeeds) {
+      const std::string text = speed_text(speed);
+      if (ImGui::Selectable(text.c_str(), speed == playback.speed())) playback.set_speed(speed);
+      record(result.widgets, "speed:" + text);
+    }
     ImGui::EndCombo();
   }
   record(result.widgets, "speed");
@@ -72,13 +79,15 @@ void draw_choices(const Theme& theme, Playback& playback, UiResult& result) {
   record(result.widgets, "clip");
 }
 
-void draw_time_text(const Theme& theme, const Playback& playback) {
+// The time can be typed; Enter goes there.
+void draw_time_entry(const Theme& theme, Playback& playback, UiResult& result) {
   if (playback.clips().empty()) return;
   std::array<char, 96> text{};
-  std::snprintf(text.data(), text.size(), "%.3f / %.3f s    key %zu of %zu", playback.time(),
-                playback.seconds(), playback.key() + 1,
-                playback.clips()[playback.clip()].key_times.size());
-  const float width = ImGui::CalcTextSize(text.data()).x;
+  std::snprintf(text.data(), text.size(), "/ %.3f s    key %zu of %zu", playback.seconds(),
+                playback.key() + 1, playback.clips()[playback.clip()].key_times.size());
+  const float entry = ImGui::CalcTextSize("0000.000").x + 2 * ImGui::GetStyle().FramePadding.x;
+  const float gap = 6 * theme.scale;
+  const float width = entry + gap + ImGui::CalcTextSize(text.data()).x;
   const float right = ImGui::GetWindowContentRegionMax().x - width;
   ImGui::SameLine();
   if (right < ImGui::GetCursorPosX() + 8 * theme.scale) {  // no room: leave it out whole
@@ -86,58 +95,16 @@ void draw_time_text(const Theme& theme, const Playback& playback) {
     return;
   }
   ImGui::SetCursorPosX(right);
+  ImGui::SetNextItemWidth(entry);
+  double time = playback.time();
+  if (ImGui::InputDouble("##time-entry", &time, 0, 0, "%.3f",
+                         ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll))
+    playback.seek(time);
+  record(result.widgets, "time-entry");
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("Seconds; type a time and press Enter");
+  ImGui::SameLine(0, gap);
   ImGui::AlignTextToFramePadding();
   ImGui::TextDisabled("%s", text.data());
-}
-
-// Ticks at the keys; where they would touch, only every n-th.
-void draw_key_ticks(const Rect& track, const Theme& theme, const Playback& playback) {
-  const auto& times = playback.clips()[playback.clip()].key_times;
-  const double seconds = playback.seconds();
-  if (!(seconds > 0)) return;
-  ImDrawList& draw = *ImGui::GetWindowDrawList();
-  const float apart = track.width / static_cast<float>(times.size());
-  const auto stride =
-      static_cast<std::size_t>(std::max(1.0f, std::ceil(4 * theme.scale / std::max(apart, 1e-6f))));
-  for (std::size_t i = 0; i < times.size(); i += stride) {
-    const float x = track.x + track.width * static_cast<float>(times[i] / seconds);
-    const bool tall = (i / stride) % 5 == 0;
-    const float top = track.y + track.height * (tall ? 0.25f : 0.42f);
-    draw.AddLine({x, top}, {x, track.y + track.height * 0.75f},
-                 faded(dim_color(), tall ? 1.0f : 0.6f), 1.2f * theme.scale);
-  }
-}
-
-void draw_track(const Theme& theme, Playback& playback, UiResult& result) {
-  const ImVec2 corner = ImGui::GetCursorScreenPos();
-  const ImVec2 size{ImGui::GetContentRegionAvail().x, ImGui::GetContentRegionAvail().y};
-  if (size.x <= 0 || size.y <= 0) return;
-  ImGui::InvisibleButton("##time-line", size);
-  record(result.widgets, "time-line");
-  ImDrawList& draw = *ImGui::GetWindowDrawList();
-  draw.AddRectFilled(corner, {corner.x + size.x, corner.y + size.y}, sunken_color(),
-                     5 * theme.scale);
-  if (playback.clips().empty()) return;
-
-  const float inset = 10 * theme.scale;
-  const Rect track{corner.x + inset, corner.y, std::max(1.0f, size.x - 2 * inset), size.y};
-  if (ImGui::IsItemActive()) {
-    playback.begin_scrub();
-    playback.seek(static_cast<double>((ImGui::GetIO().MousePos.x - track.x) / track.width) *
-                  playback.seconds());
-  } else if (playback.scrubbing()) {
-    playback.end_scrub();
-  }
-
-  const double part = playback.seconds() > 0 ? playback.time() / playback.seconds() : 0;
-  const float head = track.x + track.width * static_cast<float>(part);
-  draw.AddRectFilled({corner.x, corner.y}, {head, corner.y + size.y}, faded(accent_color(), 0.13f),
-                     5 * theme.scale, ImDrawFlags_RoundCornersLeft);
-  draw_key_ticks(track, theme, playback);
-  draw.AddLine({head, corner.y}, {head, corner.y + size.y}, accent_color(), 2 * theme.scale);
-  const float knob = 5.5f * theme.scale;
-  draw.AddTriangleFilled({head - knob, corner.y}, {head + knob, corner.y},
-                         {head, corner.y + 1.5f * knob}, accent_color());
 }
 
 }  // namespace
@@ -152,8 +119,8 @@ void draw_time_line(const Rect& place, const Theme& theme, ViewState& state, UiR
                    ImGuiWindowFlags_NoNav);
   draw_transport(theme, state.playback, result);
   draw_choices(theme, state.playback, result);
-  draw_time_text(theme, state.playback);
-  draw_track(theme, state.playback, result);
+  draw_time_entry(theme, state.playback, result);
+  draw_time_track(theme, state, result);
   ImGui::End();
 }
 

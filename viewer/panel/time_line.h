@@ -8,7 +8,6 @@
 namespace mdk {
 
 /// Draws the bar into `place`; choices act on `state` at once, the rest is asked for in `result`.
-/// Dragging holds the time; letting go plays on.
 void draw_time_line(const Rect& place, const Theme& theme, ViewState& state, UiResult& result);
 
 }  // namespace mdk

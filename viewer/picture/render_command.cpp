@@ -42,6 +42,20 @@ std::string shell_word(const std::string& word) {
   return quoted + "'";
 }
 
+std::vector<std::string> render_options(const RenderJob& job) {
+  const FrameRequest& request = job.request;
+  std::vector<std::string> words = {
+      "--size",      std::to_string(request.width) + "x" + std::to_string(request.height),
+      "--technique", std::string(technique_table()[job.technique].id),
+      "--shading",   shading_id(request.shading)};
+  if (request.samples != FrameRequest().samples)
+    words.insert(words.end(), {"--samples", std::to_string(request.samples)});
+  if (request.occlusion_rays != FrameRequest().occlusion_rays)
+    words.insert(words.end(), {"--ao", std::to_string(request.occlusion_rays)});
+  words.insert(words.end(), {"--camera", camera_text(request.camera)});
+  return words;
+}
+
 std::string render_command(const RenderJob& job, const std::string& path, const std::string& clip,
                            double time) {
   const std::filesystem::path file(path);
@@ -50,14 +64,8 @@ std::string render_command(const RenderJob& job, const std::string& path, const 
       "mdprep render " + shell_word(baked) + " -o " + shell_word(file.stem().string() + ".png");
   if (!clip.empty()) line += " --clip " + shell_word(clip);
   line += " --time " + exact_text(time);
-  line += " --size " + std::to_string(job.request.width) + "x" + std::to_string(job.request.height);
-  line += " --technique " + std::string(technique_table()[job.technique].id);
-  line += " --shading " + shading_id(job.request.shading);
-  if (job.request.samples != FrameRequest().samples)
-    line += " --samples " + std::to_string(job.request.samples);
-  if (job.request.occlusion_rays != FrameRequest().occlusion_rays)
-    line += " --ao " + std::to_string(job.request.occlusion_rays);
-  return line + " --camera '" + camera_text(job.request.camera) + "'";
+  for (const std::string& word : render_options(job)) line += " " + shell_word(word);
+  return line;
 }
 
 }  // namespace mdk

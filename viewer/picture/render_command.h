@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "viewer/picture/render_worker.h"
 
@@ -12,6 +13,9 @@ namespace mdk {
 /// .mdk beside it is named. `clip` and `time` (seconds) are what the job's moment stands for.
 std::string render_command(const RenderJob& job, const std::string& path, const std::string& clip,
                            double time);
+
+/// The options of "mdprep render" that say how: size, technique, shading, camera.
+std::vector<std::string> render_options(const RenderJob& job);
 
 /// In single quotes unless it is plain enough to stand alone.
 std::string shell_word(const std::string& word);

@@ -19,6 +19,12 @@
 
 namespace mdk {
 
+/// What a job measures: a moment of the CostCurves of a clip.
+struct SurveyMark {
+  std::uint32_t clip = 0;
+  std::size_t moment = 0;
+};
+
 /// A picture that is wanted: of which file, how, of what.
 struct RenderJob {
   std::shared_ptr<const MdkFile> file;
@@ -27,6 +33,7 @@ struct RenderJob {
   std::shared_ptr<const PartialModel> part;  ///< what of the file to show; null: all
   FrameRequest request;                      ///< its pose stays null
   std::optional<SkeletonPose> pose;          ///< posed by hand: counts instead of request.at
+  std::optional<SurveyMark> survey;          ///< not to be shown: measures for the cost curves
 };
 
 /// Whether both ask for the same pixels by the same technique; counting does not matter.

@@ -123,7 +123,9 @@ std::shared_ptr<const MdkFile> SceneLoader::bake(const std::vector<std::string>&
   const fs::path source(paths.front());
   const ScratchFolder folder;
   const std::string baked = folder.file(source.stem().string() + ".mdk");
-  const auto process = std::make_shared<BakeProcess>(paths, baked);
+  std::vector<std::string> arguments = {"-o", baked, "--"};
+  arguments.insert(arguments.end(), paths.begin(), paths.end());
+  const auto process = std::make_shared<MdprepProcess>("bake", arguments);
   {
     const std::lock_guard lock(mutex_);
     process_ = process;

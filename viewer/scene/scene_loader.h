@@ -14,7 +14,7 @@
 
 #include "common/base/error.h"
 #include "formats/mdk_view.h"
-#include "viewer/scene/bake_process.h"
+#include "viewer/scene/mdprep_process.h"
 
 namespace mdk {
 
@@ -44,12 +44,15 @@ class SceneLoader {
 
   struct Progress {
     std::string name;  ///< of the source file, without its folders
-    BakeProgress bake;
+    MdprepProgress bake;
   };
   /// Nothing where no bake is in work.
   std::optional<Progress> progress() const;
   /// What was loaded since the last call.
   std::optional<LoadedScene> take_loaded();
+
+  /// What was asked for last.
+  const std::vector<std::string>& paths() const { return paths_; }
 
   /// Loads again what has changed on disk since it was loaded last. Cheap: a few file times.
   void look_for_changes();
@@ -73,7 +76,7 @@ class SceneLoader {
   std::vector<FileStamp> stamps_;
 
   mutable std::mutex mutex_;  // of the next four
-  std::shared_ptr<BakeProcess> process_;
+  std::shared_ptr<MdprepProcess> process_;
   std::optional<Progress> progress_;
   std::optional<LoadedScene> loaded_;
   bool cancelled_ = false;

@@ -6,7 +6,7 @@
 namespace mdk {
 namespace {
 
-constexpr float kSidePanelWidth = 360, kTimeLineHeight = 92;
+constexpr float kSidePanelWidth = 360, kTimeLineHeight = 128;
 
 }  // namespace
 

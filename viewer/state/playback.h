@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -29,6 +30,13 @@ struct ClipTimes {
   double seconds() const { return key_times.back(); }
 };
 
+/// Part of a clip, in seconds from its start; `begin` < `end`.
+struct TimeRange {
+  double begin = 0, end = 0;
+
+  bool operator==(const TimeRange&) const = default;
+};
+
 std::vector<ClipTimes> clip_times(const Model& model);
 
 /// The time is always within the clip. Without clips every call is harmless and the time stays 0.
@@ -51,6 +59,21 @@ class Playback {
   /// The last key at or before the present time, counted within the clip.
   std::size_t key() const;
 
+  /// Playing stays inside the range, where there is one.
+  const std::optional<TimeRange>& range() const { return range_; }
+  /// Ends in either order, clamped to the clip; one without length clears the range, one with an
+  /// end that is not a number is ignored.
+  void set_range(double from, double to);
+  void clear_range() { range_.reset(); }
+  /// Moves one end of the range to the present time; the other stays, or is the clip's. An end that
+  /// would pass the other begins a new range up to the clip's end, or from its start.
+  void begin_range_here();
+  void end_range_here();
+  /// The range, or all of the clip.
+  TimeRange played() const { return range_.value_or(TimeRange{0, seconds()}); }
+  /// The time of the key nearest to `time`.
+  double nearest_key_time(double time) const;
+
   /// Goes to the start of another clip and plays on if it was playing. A number that is no clip is
   /// ignored.
   void set_clip(std::size_t clip);
@@ -61,10 +84,10 @@ class Playback {
   void seek(double time);
   /// Pauses at the next key before or behind the present time; loops wrap around.
   void step_key(StepDirection direction);
-  void go_to_start() { seek(0); }
-  void go_to_end() { seek(seconds()); }
+  void go_to_start() { seek(played().begin); }
+  void go_to_end() { seek(played().end); }
 
-  /// At the end of a clip that does not loop, playing starts over.
+  /// At the end of what does not loop, or outside of the range, playing starts over.
   void play();
   void pause() { playing_ = false; }
   void toggle() { playing_ ? pause() : play(); }
@@ -86,6 +109,7 @@ class Playback {
   std::vector<ClipTimes> clips_;
   std::size_t clip_ = 0;
   double time_ = 0, speed_ = 1;
+  std::optional<TimeRange> range_;
   LoopMode loop_ = LoopMode::kLoop;
   StepDirection direction_ = StepDirection::kForward;  ///< of ping-pong
   bool playing_ = false, scrubbing_ = false;

@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "common/trace/frame_stats.h"
 #include "common/trace/shading.h"
@@ -15,6 +16,8 @@
 #include "viewer/state/cluster_view.h"
 #include "viewer/state/color_scheme.h"
 #include "viewer/state/compare.h"
+#include "viewer/state/cost_curves.h"
+#include "viewer/state/file_choice.h"
 #include "viewer/state/frame_history.h"
 #include "viewer/state/hand_pose.h"
 #include "viewer/state/layout.h"
@@ -51,6 +54,15 @@ struct ViewSettings {
   /// To another row of the table, around its ends.
   void step_technique(int by);
   void next_shading();
+
+  bool operator==(const ViewSettings&) const = default;
+};
+
+enum class ExportKind { kPictures, kFilm };
+
+struct ExportSettings {
+  ExportKind kind = ExportKind::kPictures;
+  bool films_possible = false;  ///< ffmpeg is there
 };
 
 /// The last picture shown and what it cost.
@@ -100,7 +112,13 @@ struct ViewState {
   std::optional<WorkReport> last_work;
   std::map<std::size_t, TechniqueCost> costs;  ///< by row of technique_table()
   FrameHistory history;
+  CostCurves cost_curves;  ///< along the clip, from the present view
   double shown_per_second = 0;
+
+  std::vector<FileChoice> recent_files;  ///< newest first
+  std::optional<FileMenu> file_menu;     ///< where it stands open
+  ExportSettings export_settings;
+  std::optional<MdprepProgress> exporting;  ///< while that goes on
 
   std::string error;   ///< the sentence that stands in the window, else empty
   std::string notice;  ///< a short-lived message, else empty

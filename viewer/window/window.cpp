@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <utility>
 
 #include "common/base/error.h"
@@ -31,6 +32,15 @@ struct Window::Events {
   bool active = true;
   std::vector<KeyEvent> keys;
   std::vector<std::string> drops;
+
+  /// What a played hand holds; ImGui is told it in place of what the system says.
+  struct Played {
+    float x = -1, y = -1, wheel_x = 0, wheel_y = 0;
+    std::array<bool, 3> down{};
+    int key = 0;
+    unsigned character = 0;
+  };
+  std::optional<Played> played;
 
   static Events& of(GLFWwindow* window) {
     return *static_cast<Events*>(glfwGetWindowUserPointer(window));
@@ -119,6 +129,53 @@ void Window::wait_events(double seconds) {
 
 void Window::wake() { glfwPostEmptyEvent(); }
 
+void Window::play(const PlayedEvent& event) {
+  if (!events_->played) events_->played.emplace();
+  Events::Played& hand = *events_->played;
+  events_->active = true;
+  switch (event.kind) {
+    case PlayedKind::kMove:
+      hand.x = event.x;
+      hand.y = event.y;
+      break;
+    case PlayedKind::kPress:
+      hand.down.at(static_cast<std::size_t>(event.number)) = true;
+      break;
+    case PlayedKind::kRelease:
+      hand.down.at(static_cast<std::size_t>(event.number)) = false;
+      break;
+    case PlayedKind::kWheel:
+      hand.wheel_x += event.x;
+      hand.wheel_y += event.y;
+      break;
+    case PlayedKind::kKey:
+      events_->keys.push_back(event.key);
+      hand.key = event.key.key;
+      hand.character = event.key.character;
+      break;
+    case PlayedKind::kDrop:
+      events_->drops.push_back(event.path);
+      break;
+    case PlayedKind::kResize:
+      glfwSetWindowSize(window_, static_cast<int>(event.x), static_cast<int>(event.y));
+      break;
+  }
+}
+
+// After the backend has told ImGui what the system says, and before ImGui looks.
+void Window::hand_over_played() {
+  if (!events_->played) return;
+  Events::Played& hand = *events_->played;
+  ImGuiIO& io = ImGui::GetIO();
+  io.MousePos = {hand.x, hand.y};
+  std::copy(hand.down.begin(), hand.down.end(), std::begin(io.MouseDown));
+  io.MouseWheel = std::exchange(hand.wheel_y, 0.0f);
+  io.MouseWheelH = std::exchange(hand.wheel_x, 0.0f);
+  std::fill(std::begin(io.KeysDown), std::end(io.KeysDown), false);
+  if (hand.key != 0) io.KeysDown[std::exchange(hand.key, 0)] = true;
+  if (hand.character != 0) io.AddInputCharacter(std::exchange(hand.character, 0u));
+}
+
 bool Window::take_activity() { return std::exchange(events_->active, false); }
 
 std::vector<KeyEvent> Window::take_keys() {
@@ -170,6 +227,7 @@ void Window::begin_frame() {
   glClear(GL_COLOR_BUFFER_BIT);
   ImGui_ImplOpenGL3_NewFrame();
   ImGui_ImplGlfw_NewFrame();
+  hand_over_played();
   ImGui::NewFrame();
 }
 

@@ -9,6 +9,7 @@
 #include "viewer/commands.h"
 #include "viewer/options.h"
 #include "viewer/picture/picture.h"
+#include "viewer/window/played_event.h"
 
 struct GLFWwindow;
 
@@ -42,6 +43,9 @@ class Window {
   /// Paths of files dropped on the window since the last call.
   std::vector<std::string> take_drops();
 
+  /// As if a hand had done it; from then on no other hand moves the pointer.
+  void play(const PlayedEvent& event);
+
   /// Size in window coordinates, those of the mouse and of ImGui.
   float width() const;
   float height() const;
@@ -62,6 +66,7 @@ class Window {
 
  private:
   struct Events;
+  void hand_over_played();
   static void install_callbacks(GLFWwindow* window);
 
   std::unique_ptr<Events> events_;

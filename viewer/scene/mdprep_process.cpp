@@ -1,7 +1,8 @@
-#include "viewer/scene/bake_process.h"
+#include "viewer/scene/mdprep_process.h"
 
 #include <fcntl.h>
 #include <spawn.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -20,6 +21,8 @@ extern char** environ;
 
 namespace mdk {
 namespace {
+
+constexpr int kNiceness = 5;  // the picture comes first
 
 std::string mdprep_program() {
   std::error_code failure;
@@ -42,15 +45,15 @@ int spawn(std::vector<std::string> words, int messages, pid_t& pid) {
   return failure;
 }
 
-Error failed_bake(int status, const std::string& sentence) {
+Error failure_of(int status, const std::string& sentence) {
   if (WIFEXITED(status) && !sentence.empty())
     return {static_cast<ErrorCode>(WEXITSTATUS(status)), sentence};
-  return {ErrorCode::kInternal, "mdprep ended before the file was baked"};
+  return {ErrorCode::kInternal, "mdprep ended before its work was done"};
 }
 
 }  // namespace
 
-std::optional<BakeProgress> parse_bake_progress(std::string_view line) {
+std::optional<MdprepProgress> parse_mdprep_progress(std::string_view line) {
   constexpr std::string_view kClearLine = "\x1b[K";
   if (line.starts_with(kClearLine)) line.remove_prefix(kClearLine.size());
   const std::size_t bar_end = line.find("] ");
@@ -61,40 +64,43 @@ std::optional<BakeProgress> parse_bake_progress(std::string_view line) {
   const auto [end, failure] =
       std::from_chars(line.data() + digits, line.data() + line.size(), percent);
   if (failure != std::errc{}) return {};
-  return BakeProgress{std::clamp(percent / 100.0, 0.0, 1.0), std::string(line)};
+  return MdprepProgress{std::clamp(percent / 100.0, 0.0, 1.0), std::string(line)};
 }
 
-BakeProcess::BakeProcess(const std::vector<std::string>& inputs, const std::string& output) {
-  std::vector<std::string> words = {mdprep_program(), "bake", "--progress", "always"};
-  words.insert(words.end(), {"-o", output, "--"});
-  words.insert(words.end(), inputs.begin(), inputs.end());
+MdprepProcess::MdprepProcess(const std::string& subcommand,
+                             const std::vector<std::string>& arguments) {
+  std::vector<std::string> words = {mdprep_program(), subcommand, "--progress", "always"};
+  words.insert(words.end(), arguments.begin(), arguments.end());
   std::array<int, 2> ends{};
   if (::pipe2(ends.data(), O_CLOEXEC) != 0)
     throw Error(ErrorCode::kIo, std::string("mdprep cannot be started: ") + std::strerror(errno));
   const int failure = spawn(std::move(words), ends[1], pid_);
   ::close(ends[1]);
   messages_ = ends[0];
-  if (failure == 0) return;
+  if (failure == 0) {
+    ::setpriority(PRIO_PROCESS, static_cast<id_t>(pid_), kNiceness);
+    return;
+  }
   ::close(messages_);
-  throw Error(ErrorCode::kIo, std::string("mdprep, which bakes source files, cannot be started: ") +
+  throw Error(ErrorCode::kIo, std::string("mdprep, which bakes and renders, cannot be started: ") +
                                   std::strerror(failure) + "; put it beside mdview");
 }
 
-BakeProcess::~BakeProcess() {
+MdprepProcess::~MdprepProcess() {
   kill();
   ::close(messages_);
   if (pid_ > 0) ::waitpid(pid_, nullptr, 0);
 }
 
-std::optional<BakeProgress> BakeProcess::take_line(std::string_view line) {
-  auto progress = parse_bake_progress(line);
+std::optional<MdprepProgress> MdprepProcess::take_line(std::string_view line) {
+  auto progress = parse_mdprep_progress(line);
   constexpr std::string_view kName = "mdprep: ";
   if (const std::size_t at = line.find(kName); !progress && at != line.npos)
     sentence_ = line.substr(at + kName.size());
   return progress;
 }
 
-std::optional<BakeProgress> BakeProcess::next_progress() {
+std::optional<MdprepProgress> MdprepProcess::next_progress() {
   std::array<char, 4096> bytes{};
   while (true) {
     const ssize_t count = ::read(messages_, bytes.data(), bytes.size());
@@ -105,29 +111,32 @@ std::optional<BakeProgress> BakeProcess::next_progress() {
     }
     unread_.append(bytes.data(), static_cast<std::size_t>(count));
     // A bar is drawn after "\r" and has no end of its own: the last piece may be whole.
-    std::optional<BakeProgress> latest;
+    std::optional<MdprepProgress> latest;
     for (std::size_t end; (end = unread_.find_first_of("\r\n")) != unread_.npos;) {
       if (auto progress = take_line(std::string_view(unread_).substr(0, end))) latest = progress;
       unread_.erase(0, end + 1);
     }
-    if (auto progress = parse_bake_progress(unread_)) latest = progress;
+    if (auto progress = parse_mdprep_progress(unread_)) latest = progress;
     if (latest) return latest;
   }
 }
 
-void BakeProcess::finish() {
+void MdprepProcess::finish() {
   int status = 0;
   {
     const std::lock_guard lock(mutex_);
     while (::waitpid(pid_, &status, 0) < 0 && errno == EINTR) continue;
     pid_ = -1;
   }
-  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) throw failed_bake(status, sentence_);
+  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) throw failure_of(status, sentence_);
 }
 
-void BakeProcess::kill() {
+void MdprepProcess::kill() { send(SIGKILL); }
+void MdprepProcess::stop() { send(SIGTERM); }
+
+void MdprepProcess::send(int signal_number) {
   const std::lock_guard lock(mutex_);
-  if (pid_ > 0) ::kill(pid_, SIGKILL);
+  if (pid_ > 0) ::kill(pid_, signal_number);
 }
 
 }  // namespace mdk

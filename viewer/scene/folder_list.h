@@ -1,0 +1,19 @@
+// FolderList: the animations in a folder that was dropped on the window.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "viewer/state/file_choice.h"
+
+namespace mdk {
+
+inline constexpr std::size_t kMostListedFiles = 10000;
+
+/// Baked files first, then glTF, then meshes with the point caches that move them (of the same
+/// name), then the folder itself where it holds a sequence of meshes; by name. Looks at no more
+/// than kMostListedFiles files and into no other folder. Empty where there is nothing to open.
+/// Throws Error (kIo) where the folder cannot be read.
+std::vector<FileChoice> animations_in(const std::string& folder);
+
+}  // namespace mdk
