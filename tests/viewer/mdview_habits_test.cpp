@@ -103,7 +103,7 @@ TEST_F(MdviewGui, ARecentFileIsOpenedFromTheMenuAndAPathCanBeTyped) {
   typing->key("l");
   typing->click(in_widget("open-path"));
   typing->xdotool({"type", "--delay", "60", "bar.mdk"});
-  typing->xdotool({"key", "--delay", "150", "Return"});
+  typing->xdotool({"key", "Return"});
   typing->xdotool({"sleep", "0.5"});
   EXPECT_EQ(typing->quit().state["file"], "bar.mdk");
 }
@@ -161,7 +161,7 @@ TEST_F(MdviewGui, TakesNextToNoProcessorTimeAtRest) {
 }
 
 TEST_F(MdviewGui, ThePanelKeepsItsRateWhilePicturesAreSlow) {
-  const auto session = start_on_bar({"--samples", "64", "--shading", "lit", "--threads", "1"});
+  const auto session = start_on_bar({"--samples", "16", "--threads", "1"});
   session->key("space");
   session->xdotool({"sleep", "3"});
   const auto state = session->quit().state;

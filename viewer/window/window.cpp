@@ -32,6 +32,8 @@ struct Window::Events {
   bool active = true;
   std::vector<KeyEvent> keys;
   std::vector<std::string> drops;
+  std::vector<int> tapped;  ///< keys pressed since the last frame
+  std::vector<int> held;    ///< of the last frame's, those that ImGui was told of by us
 
   /// What a played hand holds; ImGui is told it in place of what the system says.
   struct Played {
@@ -92,6 +94,7 @@ void Window::install_callbacks(GLFWwindow* window) {
     Events& events = Events::of(w);
     events.active = true;
     if (action != GLFW_RELEASE) events.keys.push_back({key, 0});
+    if (action == GLFW_PRESS && key >= 0) events.tapped.push_back(key);
   });
   glfwSetCharCallback(window, [](GLFWwindow* w, unsigned character) {
     Events::of(w).keys.push_back({0, character});
@@ -162,6 +165,19 @@ void Window::play(const PlayedEvent& event) {
   }
 }
 
+// ImGui looks at keys once a frame: one that went down and up in between is held for a frame, or a
+// quick Enter in a text field would be lost.
+void Window::hold_taps() {
+  ImGuiIO& io = ImGui::GetIO();
+  for (const int key : std::exchange(events_->held, {}))
+    io.KeysDown[key] = glfwGetKey(window_, key) == GLFW_PRESS;
+  for (const int key : std::exchange(events_->tapped, {})) {
+    if (io.KeysDown[key]) continue;
+    io.KeysDown[key] = true;
+    events_->held.push_back(key);
+  }
+}
+
 // After the backend has told ImGui what the system says, and before ImGui looks.
 void Window::hand_over_played() {
   if (!events_->played) return;
@@ -227,6 +243,7 @@ void Window::begin_frame() {
   glClear(GL_COLOR_BUFFER_BIT);
   ImGui_ImplOpenGL3_NewFrame();
   ImGui_ImplGlfw_NewFrame();
+  hold_taps();
   hand_over_played();
   ImGui::NewFrame();
 }

@@ -66,6 +66,7 @@ class Window {
 
  private:
   struct Events;
+  void hold_taps();
   void hand_over_played();
   static void install_callbacks(GLFWwindow* window);
 
