@@ -1,10 +1,11 @@
 // FolderList: the animations in a folder that was dropped on the window.
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
-#include "viewer/state/file_choice.h"
+#include "viewer/scene/file_choice.h"
 
 namespace mdk {
 

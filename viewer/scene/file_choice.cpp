@@ -1,4 +1,4 @@
-#include "viewer/state/file_choice.h"
+#include "viewer/scene/file_choice.h"
 
 #include <filesystem>
 

@@ -1,6 +1,7 @@
 // FileChoice: animations that can be opened, as a list shows them.
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
