@@ -186,6 +186,15 @@ TEST_F(MdviewGui, WithoutOpenGL33ItNamesTheWayOut) {
   EXPECT_THAT(result.messages, HasSubstr("mdprep render"));
 }
 
+TEST_F(MdviewGui, EveryPageStandsInTheSmallestWindow) {
+  for (const char* tab : {"view", "cost", "compare", "clusters", "pick", "file"})
+    for (const char* size : {"64x64", "64x800", "1280x64"}) {
+      const auto result =
+          start({"bar.mdk", "--tab", tab, "--size", size, "--quit-after", "2"})->finish();
+      EXPECT_EQ(result.status, 0) << tab << " " << size << ": " << result.messages;
+    }
+}
+
 TEST_F(MdviewGui, SurvivesAFewHundredRandomEvents) {
   write_text("bad.glb", "no model at all");
   write_text("square.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n");

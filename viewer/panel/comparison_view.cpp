@@ -47,7 +47,7 @@ void draw_divider(const Rect& picture, const Theme& theme, CompareSettings& comp
                    ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
                    ImGuiWindowFlags_NoNav | ImGuiWindowFlags_NoFocusOnAppearing |
                    ImGuiWindowFlags_NoBringToFrontOnFocus);
-  ImGui::InvisibleButton("##grip", {grip, picture.height});
+  hit_area("##grip", {grip, picture.height});
   record(result.widgets, "divider");
   const bool held = ImGui::IsItemActive(), warm = held || ImGui::IsItemHovered();
   if (warm) ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);

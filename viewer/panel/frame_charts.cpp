@@ -7,6 +7,7 @@
 
 #include "common/trace/technique.h"
 #include "viewer/panel/number_text.h"
+#include "viewer/panel/ui_parts.h"
 
 namespace mdk {
 namespace {
@@ -75,7 +76,7 @@ void draw_history_plot(const Theme& theme, const FrameHistory& history) {
   const ImVec2 lo = ImGui::GetCursorScreenPos();
   const ImVec2 size{ImGui::GetContentRegionAvail().x, 46 * theme.scale};
   const ImVec2 hi{lo.x + size.x, lo.y + size.y};
-  ImGui::InvisibleButton("##history", size);
+  hit_area("##history", size);
   const bool hovered = ImGui::IsItemHovered();
   draw.AddRectFilled(lo, hi, sunken_color(), 5 * theme.scale);
 

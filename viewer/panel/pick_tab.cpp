@@ -27,7 +27,7 @@ void draw_curve(const Theme& theme, const ResidualCurve& curve, double seconds, 
   const ImVec2 lo = ImGui::GetCursorScreenPos();
   const ImVec2 size{ImGui::GetContentRegionAvail().x, 110 * theme.scale};
   const ImVec2 hi{lo.x + size.x, lo.y + size.y};
-  ImGui::InvisibleButton("##residuals", size);
+  hit_area("##residuals", size);
   record(result.widgets, "residual-plot");
   ImDrawList& draw = *ImGui::GetWindowDrawList();
   draw.AddRectFilled(lo, hi, sunken_color(), 5 * theme.scale);

@@ -47,7 +47,7 @@ void draw_tab_bar(const Theme& theme, ViewState& state, UiResult& result) {
     if (info.tab != tabs.front().tab) ImGui::SameLine(0, 0);
     const ImVec2 lo = ImGui::GetCursorScreenPos();
     const ImVec2 size{text.x + air, height};
-    if (ImGui::InvisibleButton(("##tab:" + id).c_str(), size)) state.tab = info.tab;
+    if (hit_area(("##tab:" + id).c_str(), size)) state.tab = info.tab;
     record(result.widgets, "tab:" + id);
     const bool open = state.tab == info.tab, hovered = ImGui::IsItemHovered();
     draw.AddText({lo.x + air / 2, lo.y + (height - text.y) / 2},

@@ -146,7 +146,7 @@ void draw_range(const Rect& place, const TimeScale& scale, const Theme& theme,
 void handle_range_lane(const Rect& place, const TimeScale& scale, const Theme& theme,
                        Playback& playback, UiResult& result) {
   ImGui::SetCursorScreenPos({place.x, place.y});
-  ImGui::InvisibleButton("##range", {place.width, place.height});
+  hit_area("##range", {place.width, place.height});
   record(result.widgets, "range-lane");
   if (ImGui::IsItemHovered()) {
     ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
@@ -176,7 +176,7 @@ void handle_scrubbing(const Rect& place, const TimeScale& scale, ViewState& stat
                       UiResult& result) {
   Playback& playback = state.playback;
   ImGui::SetCursorScreenPos({place.x, place.y});
-  ImGui::InvisibleButton("##time-line", {place.width, place.height});
+  hit_area("##time-line", {place.width, place.height});
   record(result.widgets, "time-line");
   const double pointed = scale.time_of(ImGui::GetIO().MousePos.x);
   if (ImGui::IsItemActive()) {

@@ -1,5 +1,6 @@
 #include "viewer/panel/ui_parts.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -8,6 +9,10 @@ namespace mdk {
 void record(WidgetMap& widgets, const std::string& name) {
   const ImVec2 lo = ImGui::GetItemRectMin(), hi = ImGui::GetItemRectMax();
   widgets[name] = {lo.x, lo.y, hi.x - lo.x, hi.y - lo.y};
+}
+
+bool hit_area(const char* id, const ImVec2& size) {
+  return ImGui::InvisibleButton(id, {std::max(size.x, 1.0f), std::max(size.y, 1.0f)});
 }
 
 void heading(const Theme& theme, const char* title) {

@@ -15,6 +15,10 @@ namespace mdk {
 /// Notes where ImGui's last item is.
 void record(WidgetMap& widgets, const std::string& name);
 
+/// An invisible button, at least a pixel large: ImGui ends the program over one without size, which
+/// a tiny window would ask for.
+bool hit_area(const char* id, const ImVec2& size);
+
 /// A small dim title with some air above.
 void heading(const Theme& theme, const char* title);
 

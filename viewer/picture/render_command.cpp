@@ -64,7 +64,7 @@ std::string render_command(const RenderJob& job, const std::string& path, const 
       "mdprep render " + shell_word(baked) + " -o " + shell_word(file.stem().string() + ".png");
   if (!clip.empty()) line += " --clip " + shell_word(clip);
   line += " --time " + exact_text(time);
-  for (const std::string& word : render_options(job)) line += " " + shell_word(word);
+  for (const std::string& word : render_options(job)) line.append(" ").append(shell_word(word));
   return line;
 }
 
