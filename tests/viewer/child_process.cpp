@@ -72,7 +72,7 @@ std::optional<int> ChildProcess::wait(double seconds) {
 }
 
 double ChildProcess::cpu_seconds() const {
-  std::ifstream in("/proc/" + std::to_string(pid_) + "/stat");
+  std::ifstream in(std::string("/proc/") + std::to_string(pid_) + "/stat");
   std::string text;
   std::getline(in, text);
   std::istringstream fields(text.substr(std::min(text.rfind(')') + 1, text.size())));

@@ -110,7 +110,8 @@ TEST(SessionPath, FollowsTheEnvironmentAndTheOptions) {
 
 TEST(RecentFiles, AreNewestFirstEachOnceAndBounded) {
   std::vector<FileChoice> recent;
-  for (int i = 0; i < 30; ++i) remember_file(recent, {"/m/" + std::to_string(i) + ".mdk"});
+  for (int i = 0; i < 30; ++i)
+    remember_file(recent, {std::string("/m/") + std::to_string(i) + ".mdk"});
   remember_file(recent, {"/m/./25.mdk"});
   ASSERT_EQ(recent.size(), kMostRecentFiles);
   EXPECT_EQ(recent[0].paths, (std::vector<std::string>{"/m/25.mdk"}));

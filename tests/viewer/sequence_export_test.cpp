@@ -54,7 +54,7 @@ TEST_F(Exporting, MakesAPictureForEachKeyInANewFolder) {
     ASSERT_FALSE(result.error) << result.error->what();
     EXPECT_THAT(result.sentence, HasSubstr(name));
     for (const char* key : {"0002", "0003", "0004"})
-      EXPECT_TRUE(fs::is_regular_file(fs::path(name) / ("bar_" + std::string(key) + ".png")));
+      EXPECT_TRUE(fs::is_regular_file(fs::path(name) / (std::string("bar_") + key + ".png")));
     EXPECT_EQ(std::distance(fs::directory_iterator(name), fs::directory_iterator()), 3);
   }
 }

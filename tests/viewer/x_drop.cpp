@@ -115,7 +115,7 @@ void drop_file(const std::string& display, const std::string& window_name,
 void set_display_density(const std::string& display, int dots_per_inch) {
   Display* const x = XOpenDisplay(display.c_str());
   if (!x) throw std::runtime_error("no display " + display);
-  const std::string resources = "Xft.dpi:\t" + std::to_string(dots_per_inch) + "\n";
+  const std::string resources = std::string("Xft.dpi:\t") + std::to_string(dots_per_inch) + "\n";
   XChangeProperty(x, DefaultRootWindow(x), XA_RESOURCE_MANAGER, XA_STRING, 8, PropModeReplace,
                   reinterpret_cast<const unsigned char*>(resources.data()),
                   static_cast<int>(resources.size()));
