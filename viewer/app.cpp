@@ -339,7 +339,7 @@ void App::draw() {
     first_picture_ms_ = since_start_.milliseconds();
   // A scripted run with nothing to trace still comes to its end.
   const bool nothing_comes = !loader_.busy() && (!state_.file || requests_.failed());
-  if (scripted() && nothing_comes) ++frames_shown_;
+  if (scripted() && nothing_comes && !quit_) ++frames_shown_;
 }
 
 }  // namespace mdk

@@ -59,11 +59,13 @@ void App::finish() {
     const Picture picture = window_.read_pixels();
     write_png(options_.screenshot, picture.width, picture.height, picture.pixels);
   }
-  if (options_.print_state)
+  if (options_.print_state) {
+    if (scripted()) draw();  // so that the widgets told of are those of the last frame
     std::cout << state_json(state_,
                             {frames_shown_, window_draws_, window_.width(), window_.height(),
                              widgets_, first_picture_ms_, render_command_of_picture()})
               << std::endl;
+  }
 }
 
 }  // namespace mdk

@@ -161,7 +161,7 @@ TEST_F(MdviewGui, TakesNextToNoProcessorTimeAtRest) {
 }
 
 TEST_F(MdviewGui, ThePanelKeepsItsRateWhilePicturesAreSlow) {
-  const auto session = start_on_bar({"--samples", "16", "--threads", "1"});
+  const auto session = start_on_bar({"--samples", "128", "--threads", "1"});
   session->key("space");
   session->xdotool({"sleep", "3"});
   const auto state = session->quit().state;
