@@ -11,8 +11,7 @@ constexpr std::uint32_t kNone = 0xffffffffu;
 /// Ascending, each once.
 void tidy(std::vector<std::uint32_t>& numbers) {
   std::ranges::sort(numbers);
-  const auto repeated = std::ranges::unique(numbers);
-  numbers.erase(repeated.begin(), repeated.end());
+  numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
 }
 
 }  // namespace

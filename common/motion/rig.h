@@ -64,7 +64,6 @@ struct Rig : RigLists<OwnedList> {
   RigView view() const;
   /// Bytes of all lists.
   std::size_t bytes() const;
-  bool operator==(const Rig&) const = default;
 };
 
 /// The bones and morph weights of one moment.
