@@ -10,7 +10,6 @@
 namespace mdk::gltf {
 namespace {
 
-constexpr std::size_t kMaxTexels = std::size_t{1} << 28;
 constexpr std::uint32_t kWhite = 0xffffffffu;
 
 }  // namespace
@@ -84,13 +83,9 @@ std::uint32_t AppearanceBuilder::load_texture(int image) {
     document_.dependencies.push_back(path);
     bytes = file;
   }
-  const DecodedImage decoded = decode_image(bytes);
-  if (!decoded.problem.empty()) return leave_out(decoded.problem);
-  if (decoded.texels.size() > kMaxTexels - appearance_.texels.size())
-    return leave_out("would make more than 268 million texels");
-  const auto number = static_cast<std::uint32_t>(appearance_.textures.size());
-  appearance_.textures.push_back({decoded.width, decoded.height, appearance_.texels.size()});
-  appearance_.texels.insert(appearance_.texels.end(), decoded.texels.begin(), decoded.texels.end());
+  std::string problem;
+  const std::uint32_t number = add_texture(bytes, appearance_, problem);
+  if (number == kNoTexture) return leave_out(problem);
   return number;
 }
 

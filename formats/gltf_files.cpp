@@ -4,9 +4,11 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <optional>
 #include <system_error>
 
 #include "common/base/error.h"
+#include "formats/neighbor_path.h"
 
 namespace mdk::gltf {
 namespace {
@@ -14,7 +16,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kMaxJsonBytes = std::size_t{1} << 30;
-constexpr std::size_t kMaxNameBytes = 1000;
 constexpr std::uintmax_t kMaxFileBytes = 0xffffffffu;  // tinygltf counts bytes in 32 bits
 
 int hex_digit(char c) {
@@ -78,13 +79,11 @@ std::string resolve_uri(const std::string& gltf_path, const std::string& uri) {
     throw bad_input(gltf_path, "refers to \"" + uri.substr(0, 40) + "…\", which at " +
                                    std::to_string(name.size()) +
                                    " bytes is no name that a file can have");
-  const fs::path relative = fs::path(name).lexically_normal();
-  const bool leaves = relative.is_absolute() || relative.empty() || *relative.begin() == ".." ||
-                      *relative.begin() == ".";
-  if (leaves || has_scheme(name) || name.find('\0') != std::string::npos)
+  const std::optional<std::string> path = neighbor_path(gltf_path, name);
+  if (!path || has_scheme(name))
     throw bad_input(gltf_path, "refers to \"" + uri.substr(0, 200) +
                                    "\", which is not a file in its own folder; put it there");
-  return (fs::path(gltf_path).parent_path() / relative).string();
+  return *path;
 }
 
 bool is_glb(const Bytes& bytes) {

@@ -15,8 +15,8 @@ using Bytes = std::vector<unsigned char>;
 Bytes read_whole_file(const std::string& path);
 
 /// Where the relative `uri` of `gltf_path` leads, percent-decoded. Throws Error (kBadInput) for a
-/// URI with a scheme, an absolute path, or one that leaves the folder of `gltf_path`. (Names are
-/// judged, not links: a link inside the folder is whoever made the folder's decision.)
+/// URI with a scheme, an absolute path, or one that leaves the folder of `gltf_path`, as
+/// neighbor_path judges it.
 std::string resolve_uri(const std::string& gltf_path, const std::string& uri);
 
 /// Whether the bytes start like a binary glTF.

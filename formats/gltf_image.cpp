@@ -13,7 +13,8 @@
 namespace mdk::gltf {
 namespace {
 
-constexpr std::uint64_t kMaxTexels = 64'000'000;
+constexpr std::uint64_t kMaxTexels = 64'000'000;               // of one image
+constexpr std::size_t kMaxTexelsInAll = std::size_t{1} << 28;  // of an appearance
 
 bool starts_with(std::span<const unsigned char> bytes, std::span<const unsigned char> magic) {
   return bytes.size() >= magic.size() && std::memcmp(bytes.data(), magic.data(), magic.size()) == 0;
@@ -134,6 +135,19 @@ DecodedImage decode_image(std::span<const unsigned char> bytes) {
   if (is_png(bytes)) return decode_png(bytes);
   if (is_jpeg(bytes)) return decode_jpeg(bytes);
   return refused("is neither PNG nor JPEG");
+}
+
+std::uint32_t add_texture(std::span<const unsigned char> bytes, Appearance& appearance,
+                          std::string& problem) {
+  const DecodedImage decoded = decode_image(bytes);
+  problem = decoded.problem;
+  if (problem.empty() && decoded.texels.size() > kMaxTexelsInAll - appearance.texels.size())
+    problem = "would make more than 268 million texels";
+  if (!problem.empty()) return kNoTexture;
+  const auto number = static_cast<std::uint32_t>(appearance.textures.size());
+  appearance.textures.push_back({decoded.width, decoded.height, appearance.texels.size()});
+  appearance.texels.insert(appearance.texels.end(), decoded.texels.begin(), decoded.texels.end());
+  return number;
 }
 
 }  // namespace mdk::gltf

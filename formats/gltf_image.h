@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "common/motion/appearance.h"
+
 namespace mdk::gltf {
 
 struct DecodedImage {
@@ -17,5 +19,10 @@ struct DecodedImage {
 /// Decodes a PNG or JPEG of at most 64 megapixels; its size is judged before it is decoded. Never
 /// throws for a bad image: see `problem` ("is neither PNG nor JPEG").
 DecodedImage decode_image(std::span<const unsigned char> bytes);
+
+/// The number of a new texture of `appearance`; kNoTexture and why in `problem` where the image
+/// cannot be decoded or there would be over 268 million texels.
+std::uint32_t add_texture(std::span<const unsigned char> bytes, Appearance& appearance,
+                          std::string& problem);
 
 }  // namespace mdk::gltf

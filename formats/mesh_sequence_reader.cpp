@@ -7,6 +7,7 @@
 
 #include "common/base/error.h"
 #include "common/base/parallel.h"
+#include "formats/obj_materials.h"
 #include "formats/obj_reader.h"
 #include "formats/ply_reader.h"
 #include "formats/point_cache_reader.h"
@@ -17,10 +18,10 @@ namespace {
 constexpr std::size_t kMaxPoseBytes = std::size_t{16} << 30;
 constexpr std::size_t kFilesPerReport = 16;  // read at a time, and so in memory beside the poses
 
-TriangleMesh read_mesh(const std::string& path) {
+TriangleMesh read_mesh(const std::string& path, ObjContent content) {
   const std::string extension = std::filesystem::path(path).extension().string();
   const bool is_ply = extension.size() == 4 && (extension[1] | 0x20) == 'p';
-  return is_ply ? read_ply(path) : read_obj(path);
+  return is_ply ? read_ply(path) : read_obj(path, content);
 }
 
 void require_clip(const std::string& name, const std::string& path, const ReadOptions& options) {
@@ -30,25 +31,13 @@ void require_clip(const std::string& name, const std::string& path, const ReadOp
                   "--clips " + wanted + ": " + path + " has one clip, \"" + name + "\"");
 }
 
-Appearance appearance_of(const TriangleMesh& mesh) {
-  Appearance appearance;
-  appearance.materials.emplace_back();
-  appearance.triangle_materials.assign(mesh.triangles.size(), 0);
-  if (mesh.vertex_colors.empty()) return appearance;
-  for (float& channel : appearance.materials.front().base_color) channel = 1;
-  for (const Triangle& triangle : mesh.triangles)
-    for (const std::uint32_t v : triangle.v)
-      appearance.corner_colors.push_back(mesh.vertex_colors[v]);
-  return appearance;
-}
-
-/// Everything but the poses, which stand in `first`.
-ReadResult begin_result(TriangleMesh& first) {
+/// Everything but the poses, which stand in `first`, read from `path`.
+ReadResult begin_result(const std::string& path, TriangleMesh& first) {
   ReadResult result;
-  result.sequence.appearance = appearance_of(first);
+  result.notes = std::move(first.notes);
+  result.sequence.appearance = read_appearance(path, first, result);
   result.sequence.vertex_count = static_cast<std::uint32_t>(first.vertices.size());
   result.sequence.triangles = std::move(first.triangles);
-  result.notes = std::move(first.notes);
   return result;
 }
 
@@ -85,7 +74,7 @@ std::vector<TriangleMesh> read_batch(const std::vector<std::string>& files, std:
   parallel_chunks(end - begin, 1, [&](std::size_t from, std::size_t to) {
     for (std::size_t i = from; i < to; ++i) {
       try {
-        meshes[i] = read_mesh(files[begin + i]);
+        meshes[i] = read_mesh(files[begin + i], ObjContent::kShape);
       } catch (...) {
         failures[i] = std::current_exception();
       }
@@ -110,9 +99,9 @@ ReadResult read_mesh_sequence(const NumberedFiles& sequence, const ReadOptions& 
   const std::vector<std::string>& files = sequence.files;
   require_clip(sequence.name, files.front(), options);
   progress.report("read", 0);
-  TriangleMesh first = read_mesh(files.front());
+  TriangleMesh first = read_mesh(files.front(), ObjContent::kShapeAndMaterials);
   require_room(sequence, first.vertices.size());
-  ReadResult result = begin_result(first);
+  ReadResult result = begin_result(files.front(), first);
   PoseSequence& poses = result.sequence;
   poses.positions = std::move(first.vertices);
   poses.positions.reserve(files.size() * poses.vertex_count);
@@ -136,7 +125,7 @@ ReadResult read_mesh_sequence(const NumberedFiles& sequence, const ReadOptions& 
                            " are shown");
   if (const std::string gaps = gap_sentence(sequence); !gaps.empty()) result.notes.push_back(gaps);
   finish(sequence.name, poses);
-  result.dependencies = files;
+  result.dependencies.insert(result.dependencies.begin(), files.begin(), files.end());
   progress.report("read", 1);
   return result;
 }
@@ -146,14 +135,14 @@ ReadResult read_cached_mesh(const std::string& mesh, const std::string& cache,
   const std::string name = std::filesystem::path(cache).stem().string();
   require_clip(name, cache, options);
   progress.report("read", 0);
-  TriangleMesh first = read_mesh(mesh);
-  ReadResult result = begin_result(first);
+  TriangleMesh first = read_mesh(mesh, ObjContent::kShapeAndMaterials);
+  ReadResult result = begin_result(mesh, first);
   PointCache frames =
       read_point_cache(cache, {options.fps, result.sequence.vertex_count}, progress);
   result.sequence.key_times = std::move(frames.key_times);
   result.sequence.positions = std::move(frames.positions);
   finish(name, result.sequence);
-  result.dependencies = {mesh, cache};
+  result.dependencies.insert(result.dependencies.begin(), {mesh, cache});
   return result;
 }
 

@@ -11,7 +11,7 @@ namespace mdk {
 
 /// One clip, called like the sequence; key i is at (number i - first number) / fps, so that a
 /// missing file leaves its gap in time. Every file must have the first one's triangles; its colours
-/// are taken. Throws Error as read_obj and read_ply do: kBadInput, too, for a file whose triangles
+/// and materials are taken. Throws Error as read_obj and read_ply do: kBadInput, too, for a file whose triangles
 /// differ (named), kOverLimit where the poses take over 16 GiB, kUsage where `clips` names another
 /// clip. Files are read in parallel; the first broken one is reported.
 ReadResult read_mesh_sequence(const NumberedFiles& sequence, const ReadOptions& options,

@@ -5,9 +5,12 @@
 #include <cstddef>
 #include <optional>
 #include <string_view>
+#include <unordered_map>
+#include <utility>
 
 #include "common/base/error.h"
 #include "formats/mapped_file.h"
+#include "formats/obj_statements.h"
 #include "formats/text_scan.h"
 
 namespace mdk {
@@ -15,64 +18,20 @@ namespace {
 
 constexpr std::uint32_t kWhite = 0xffffffffu;
 
-bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r'; }
+constexpr std::uint32_t kNoIndex = 0xffffffffu;
 
-/// The words of one statement: blanks part them, and so does a backslash at the end of a line.
-class Words {
- public:
-  explicit Words(std::string_view statement) : rest_(statement) {}
+using obj::Statements;
+using obj::Words;
 
-  /// Empty at the end.
-  std::string_view next() {
-    while (!rest_.empty() && is_gap(rest_.front())) rest_.remove_prefix(1);
-    std::size_t size = 0;
-    while (size < rest_.size() && !is_gap(rest_[size])) ++size;
-    const std::string_view word = rest_.substr(0, size);
-    rest_.remove_prefix(size);
-    return word;
-  }
-
- private:
-  static bool is_gap(char c) { return is_blank(c) || c == '\n' || c == '\\'; }
-
-  std::string_view rest_;
-};
-
-/// Cuts the text into statements and counts the lines they start on.
-class Statements {
- public:
-  explicit Statements(std::string_view text) : rest_(text) {}
-
-  bool next(std::string_view& statement) {
-    if (rest_.empty()) return false;
-    line_ = next_line_;
-    std::size_t end = 0;
-    while (end < rest_.size()) {
-      if (rest_[end] == '\n') {
-        ++next_line_;
-        if (!continues(end)) break;
-      }
-      ++end;
-    }
-    statement = rest_.substr(0, end);
-    rest_.remove_prefix(std::min(end + 1, rest_.size()));
-    return true;
-  }
-  std::size_t line() const { return line_; }
-
- private:
-  bool continues(std::size_t end) const {
-    while (end > 0 && rest_[end - 1] == '\r') --end;
-    return end > 0 && rest_[end - 1] == '\\';
-  }
-
-  std::string_view rest_;
-  std::size_t line_ = 0, next_line_ = 1;
+struct Corner {
+  std::uint32_t vertex = 0;
+  std::uint32_t texcoord = kNoIndex;
 };
 
 class ObjParser {
  public:
-  explicit ObjParser(const std::string& path) : path_(path) {}
+  ObjParser(const std::string& path, ObjContent content)
+      : path_(path), with_materials_(content == ObjContent::kShapeAndMaterials) {}
 
   TriangleMesh parse(std::string_view text) {
     Statements statements(text);
@@ -84,8 +43,8 @@ class ObjParser {
         add_vertex(words);
       } else if (keyword == "f") {
         add_face(words);
-      } else if (keyword == "usemtl") {
-        has_materials_ = true;
+      } else if (with_materials_) {
+        add_to_materials(keyword, words);
       }
     }
     finish();
@@ -116,17 +75,45 @@ class ObjParser {
     }
   }
 
+  void add_to_materials(std::string_view keyword, Words& words) {
+    if (keyword == "vt") {
+      const auto coordinate = [&] {
+        const std::optional<float> number = parsed<float>(words.next());
+        return number && std::isfinite(*number) ? *number : 0;
+      };
+      const float u = coordinate(), v = coordinate();
+      texcoords_.push_back({u, 1 - v});
+    } else if (keyword == "usemtl") {
+      use_material(words.rest());
+    } else if (keyword == "mtllib") {
+      mesh_.materials.libraries.emplace_back(words.rest());
+    }
+  }
+
+  void use_material(std::string_view name) {
+    const auto next = static_cast<std::uint32_t>(mesh_.materials.names.size());
+    const auto [known, is_new] = material_numbers_.try_emplace(std::string(name), next);
+    if (is_new) mesh_.materials.names.emplace_back(name);
+    material_ = known->second;
+  }
+
+  void add_triangle(const Corner& a, const Corner& b, const Corner& c) {
+    if (mesh_.triangles.size() == kMaxMeshTriangles)
+      throw Error(ErrorCode::kOverLimit, path_ + ": has over 178 million triangles");
+    mesh_.triangles.push_back({{a.vertex, b.vertex, c.vertex}});
+    if (!with_materials_) return;
+    if (material_ == kNoIndex) use_material("");
+    mesh_.materials.triangles.push_back(material_);
+    for (const Corner& corner : {a, b, c}) corner_texcoords_.push_back(corner.texcoord);
+  }
+
   void add_face(Words& words) {
-    std::uint32_t first = 0, last = 0;
+    Corner first, last;
     std::size_t corners = 0;
     for (std::string_view word = words.next(); !word.empty(); word = words.next()) {
-      const std::uint32_t corner = vertex_of(word);
+      const Corner corner{vertex_of(word), with_materials_ ? texcoord_of(word) : kNoIndex};
       if (corners == 0) first = corner;
-      if (corners >= 2) {
-        if (mesh_.triangles.size() == kMaxMeshTriangles)
-          throw Error(ErrorCode::kOverLimit, path_ + ": has over 178 million triangles");
-        mesh_.triangles.push_back({{first, last, corner}});
-      }
+      if (corners >= 2) add_triangle(first, last, corner);
       last = corner;
       ++corners;
     }
@@ -150,6 +137,18 @@ class ObjParser {
     return vertex;
   }
 
+  /// The second number of a corner, counted like the first; kNoIndex where there is none.
+  std::uint32_t texcoord_of(std::string_view word) const {
+    const std::size_t slash = word.find('/');
+    if (slash == word.npos) return kNoIndex;
+    word.remove_prefix(slash + 1);
+    const std::optional<std::int64_t> number = parsed<std::int64_t>(word.substr(0, word.find('/')));
+    const auto count = static_cast<std::int64_t>(texcoords_.size());
+    if (!number || *number == 0 || *number < -count || *number > std::int64_t{kNoIndex})
+      return kNoIndex;
+    return static_cast<std::uint32_t>(*number < 0 ? count + *number : *number - 1);
+  }
+
   [[noreturn]] void no_such(std::size_t line, std::string_view word) const {
     fail(line, "a face has the corner " + quoted(word) + ", which the file has no vertex for");
   }
@@ -159,27 +158,41 @@ class ObjParser {
     if (largest_ >= mesh_.vertices.size())
       no_such(largest_line_, std::to_string(std::uint64_t{largest_} + 1));
     if (!mesh_.vertex_colors.empty()) mesh_.vertex_colors.resize(mesh_.vertices.size(), kWhite);
-    if (has_materials_) mesh_.notes.push_back("the materials of " + path_ + " are not read");
+    if (!texcoords_.empty()) look_up_texcoords();
+  }
+
+  /// They may come after the faces that use them.
+  void look_up_texcoords() {
+    mesh_.materials.corners.reserve(corner_texcoords_.size());
+    for (const std::uint32_t t : corner_texcoords_) {
+      const bool is_there = t < texcoords_.size();
+      mesh_.materials.is_missing_texcoords |= !is_there;
+      mesh_.materials.corners.push_back(is_there ? texcoords_[t] : TexCoord{});
+    }
   }
 
   const std::string& path_;
   std::size_t line_ = 0;
   std::uint32_t largest_ = 0;     ///< of all vertices that faces use
   std::size_t largest_line_ = 0;  ///< where; 0 before the first face
-  bool has_materials_ = false;
+  const bool with_materials_;
+  std::uint32_t material_ = kNoIndex;
+  std::unordered_map<std::string, std::uint32_t> material_numbers_;
+  std::vector<TexCoord> texcoords_;
+  std::vector<std::uint32_t> corner_texcoords_;
   TriangleMesh mesh_;
 };
 
 }  // namespace
 
-TriangleMesh read_obj(const std::string& path) {
+TriangleMesh read_obj(const std::string& path, ObjContent content) {
   const MappedFile file(path);
   const std::span<const std::byte> bytes = file.bytes();
-  return parse_obj(path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+  return parse_obj(path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()}, content);
 }
 
-TriangleMesh parse_obj(const std::string& path, std::string_view text) {
-  return ObjParser(path).parse(text);
+TriangleMesh parse_obj(const std::string& path, std::string_view text, ObjContent content) {
+  return ObjParser(path, content).parse(text);
 }
 
 }  // namespace mdk

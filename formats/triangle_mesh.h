@@ -15,20 +15,35 @@ namespace mdk {
 inline constexpr std::size_t kMaxMeshVertices = std::size_t{1} << 27;
 inline constexpr std::size_t kMaxMeshTriangles = (std::size_t{1} << 29) / 3;
 
+/// How the faces of an .obj refer to what an .mtl describes.
+struct MaterialUse {
+  std::vector<std::string> libraries;    ///< as each mtllib names them
+  std::vector<std::string> names;        ///< those used; "" before the first usemtl
+  std::vector<std::uint32_t> triangles;  ///< per triangle, index into `names`
+  std::vector<TexCoord> corners;         ///< 3 per triangle, or none where the file has none
+  bool is_missing_texcoords = false;     ///< some corners have none, and (0, 0) in their place
+};
+
 struct TriangleMesh {
   std::vector<Vec3f> vertices;
   std::vector<Triangle> triangles;
   /// Per vertex, linear RGBA, 8 bits each, red lowest; empty where no vertex has a colour.
   std::vector<std::uint32_t> vertex_colors;
+  MaterialUse materials;           ///< of .obj files, where asked for
   std::vector<std::string> notes;  ///< one sentence per thing left out
 };
 
-/// An sRGB colour (each channel clamped to [0, 1]) as opaque linear RGBA, red lowest.
+/// An sRGB channel, clamped to [0, 1] (NaN: 0), as linear light.
+inline double linear_channel(double srgb) {
+  const double s = std::min(std::max(0.0, srgb), 1.0);
+  return s <= 0.04045 ? s / 12.92 : std::pow((s + 0.055) / 1.055, 2.4);
+}
+
+/// An sRGB colour as opaque linear RGBA, red lowest.
 inline std::uint32_t linear_color(const Vec3f& srgb) {
   std::uint32_t color = 0xff000000u;
   for (std::size_t i = 0; i < 3; ++i) {
-    const double s = std::min(std::max(0.0, static_cast<double>(srgb[i])), 1.0);  // NaN: 0
-    const double linear = s <= 0.04045 ? s / 12.92 : std::pow((s + 0.055) / 1.055, 2.4);
+    const double linear = linear_channel(static_cast<double>(srgb[i]));
     color |= static_cast<std::uint32_t>(std::lround(linear * 255)) << (8 * i);
   }
   return color;

@@ -51,7 +51,8 @@ TEST_F(MeshSequenceData, AsPlyOfAnyEncodingTheyAreTheSameToTheBit) {
   for (const PlyEncoding encoding : {PlyEncoding::kLittleEndian, PlyEncoding::kBigEndian}) {
     const TempFolder folder;
     for (int i = 1; i <= 24; ++i) {
-      const TriangleMesh mesh = read_obj(need("sequences/cow_obj/" + std::to_string(i) + ".obj"));
+      const TriangleMesh mesh =
+          read_obj(need("sequences/cow_obj/" + std::to_string(i) + ".obj"), ObjContent::kShape);
       PlyBuilder ply(encoding, "element vertex " + std::to_string(mesh.vertices.size()) +
                                    "\nproperty float x\nproperty float y\nproperty float z\n"
                                    "element face " +

@@ -17,7 +17,7 @@ class ObjReader : public testing::Test {
   TriangleMesh read(const std::string& text) {
     const std::string path = folder_.file("mesh.obj");
     write_bytes(path, Bytes(text.begin(), text.end()));
-    return read_obj(path);
+    return read_obj(path, ObjContent::kShapeAndMaterials);
   }
   void expect_bad(const std::string& text, const std::string& words) {
     expect_error(ErrorCode::kBadInput, words, [&] { read(text); });
@@ -60,9 +60,22 @@ TEST_F(ObjReader, ColoursAfterTheCoordinatesAreSrgb) {
               ElementsAre(0xffffffffu, 0xff00'0000u | 55u << 8 | 255u, 0xff00'00ffu));
 }
 
-TEST_F(ObjReader, MaterialsLeftOutAreNoted) {
-  EXPECT_THAT(read("usemtl red\n" + kSquare + "f 1 2 3\n").notes,
-              ElementsAre(HasSubstr("materials")));
+TEST_F(ObjReader, FacesNameTheirMaterialsAndCornersTheirTexcoords) {
+  const std::string text =
+      "mtllib my colours.mtl\n" + kSquare +
+      "f 1 2 3\nvt 0.5 0.25\nusemtl  dark red \nf 1/1 2/-1 3/2 4\nusemtl b\nf 1/9 2/x 3/1/1\n"
+      "usemtl dark red\nf 2 3 4\nvt 1 1\n";
+  const TriangleMesh mesh = read(text);
+  EXPECT_THAT(mesh.materials.libraries, ElementsAre("my colours.mtl"));
+  EXPECT_THAT(mesh.materials.names, ElementsAre("", "dark red", "b"));
+  EXPECT_THAT(mesh.materials.triangles, ElementsAre(0, 1, 1, 2, 1));
+  ASSERT_EQ(mesh.materials.corners.size(), 15u);
+  EXPECT_EQ(mesh.materials.corners[3].u, 0.5f) << "of the file's own first";
+  EXPECT_EQ(mesh.materials.corners[4].v, 0.75f) << "v runs downwards here, upwards in the file";
+  EXPECT_EQ(mesh.materials.corners[5].u, 1.0f) << "one that comes after its face";
+  EXPECT_EQ(mesh.materials.corners[9].u, 0.0f) << "one that is not there";
+  EXPECT_TRUE(mesh.materials.is_missing_texcoords);
+  EXPECT_THAT(parse_obj("a.obj", text, ObjContent::kShape).materials.names, IsEmpty());
 }
 
 TEST_F(ObjReader, WhatIsBrokenIsRefusedWithItsLine) {
@@ -104,8 +117,9 @@ TEST_F(ObjReader, AnyCutOrFlippedByteIsReadOrRefusedInOneSentence) {
 }
 
 TEST_F(ObjReader, AFileThatIsNotThereIsAnIoError) {
-  expect_error(ErrorCode::kIo, "none.obj", [&] { read_obj(folder_.file("none.obj")); });
-  expect_error(ErrorCode::kIo, "folder", [&] { read_obj(folder_.path()); });
+  expect_error(ErrorCode::kIo, "none.obj",
+               [&] { read_obj(folder_.file("none.obj"), ObjContent::kShape); });
+  expect_error(ErrorCode::kIo, "folder", [&] { read_obj(folder_.path(), ObjContent::kShape); });
 }
 
 }  // namespace

@@ -78,7 +78,7 @@ TEST(PlyReader, PolygonsAreTheFansThatAnObjGives) {
       "property list uchar int vertex_indices\nend_header\n"
       "0 0 0\n2 0 0\n0.1 0.1 1e-60\n0 2 0\n-1 1 0\n5 4 0 1 2 3\n";
   const std::string obj = "v 0 0 0\nv 2 0 0\nv 0.1 0.1 1e-60\nv 0 2 0\nv -1 1 0\nf 5 1 2 3 4\n";
-  const TriangleMesh a = parse_ply("a.ply", ply), b = parse_obj("b.obj", obj);
+  const TriangleMesh a = parse_ply("a.ply", ply), b = parse_obj("b.obj", obj, ObjContent::kShape);
   EXPECT_EQ(a.triangles, b.triangles);
   EXPECT_EQ(a.vertices, b.vertices);
   EXPECT_THAT(a.vertex_colors, IsEmpty());

@@ -17,6 +17,7 @@ struct FuzzTarget {
 
 const FuzzTarget& gltf_target();
 const FuzzTarget& obj_target();
+const FuzzTarget& mtl_target();
 const FuzzTarget& ply_target();
 const FuzzTarget& pc2_target();
 const FuzzTarget& mdd_target();

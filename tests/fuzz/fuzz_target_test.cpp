@@ -101,10 +101,10 @@ TEST_P(FuzzTargets, AnyMutationIsReadOrRefusedInOneSentence) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, FuzzTargets,
-                         testing::Values(&gltf_target(), &obj_target(), &ply_target(),
-                                         &pc2_target(), &mdd_target(), &image_target(),
-                                         &draco_target(), &meshopt_target(), &mdk_target(),
-                                         &manifest_target()),
+                         testing::Values(&gltf_target(), &obj_target(), &mtl_target(),
+                                         &ply_target(), &pc2_target(), &mdd_target(),
+                                         &image_target(), &draco_target(), &meshopt_target(),
+                                         &mdk_target(), &manifest_target()),
                          [](const auto& tested) { return std::string(tested.param->name); });
 
 }  // namespace

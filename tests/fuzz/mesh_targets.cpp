@@ -1,8 +1,9 @@
-// Meshes of one pose: .obj and .ply, from memory.
+// Meshes of one pose: .obj and .ply, and materials: .mtl, from memory.
 #include <cmath>
 #include <stdexcept>
 #include <string_view>
 
+#include "formats/obj_materials.h"
 #include "formats/obj_reader.h"
 #include "formats/ply_reader.h"
 #include "tests/formats/ply_builder.h"
@@ -15,6 +16,18 @@ std::string_view text_of(std::span<const unsigned char> bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
+void require_sound(const MaterialUse& use, std::size_t triangles) {
+  if (!use.triangles.empty() && use.triangles.size() != triangles)
+    throw std::logic_error("read more or fewer materials than triangles");
+  for (const std::uint32_t material : use.triangles)
+    if (material >= use.names.size()) throw std::logic_error("read a material without name");
+  if (!use.corners.empty() && use.corners.size() != 3 * triangles)
+    throw std::logic_error("read more or fewer texture coordinates than corners");
+  for (const TexCoord& corner : use.corners)
+    if (!std::isfinite(corner.u) || !std::isfinite(corner.v))
+      throw std::logic_error("read a texture coordinate that is not finite");
+}
+
 void require_sound(const TriangleMesh& mesh) {
   if (mesh.triangles.empty()) throw std::logic_error("read a mesh without triangles");
   for (const Triangle& triangle : mesh.triangles)
@@ -25,6 +38,7 @@ void require_sound(const TriangleMesh& mesh) {
       if (!std::isfinite(vertex[a])) throw std::logic_error("read a vertex that is not finite");
   if (!mesh.vertex_colors.empty() && mesh.vertex_colors.size() != mesh.vertices.size())
     throw std::logic_error("read more or fewer colours than vertices");
+  require_sound(mesh.materials, mesh.triangles.size());
 }
 
 std::vector<Bytes> obj_seeds() {
@@ -34,6 +48,17 @@ std::vector<Bytes> obj_seeds() {
                "v -1 1e-3 0 1 1 1\nvt 0 0\nvn 0 0 1\nusemtl red\ns off\nf 1/1/1 2/1/1 3/1/1 "
                "4//1\n"),
       bytes_of("o late\nf 1 2 3\nv 0 0 0\n\tv 1.5 .5 +0\nv 0 1 \\\n 0\nf -3/1 2/2 -1/3\n")};
+}
+
+std::vector<Bytes> mtl_seeds() {
+  return {
+      bytes_of("# two\nnewmtl dark red\nKd 0.5 0 1e-3\nKs 1 1 1\nd 0.5\nnewmtl b\nKd 0.25\n"
+               "map_Kd -o 0.5 0 0 -clamp on wood dark.png\nmap_Ks a.png\n")};
+}
+
+void require_sound(const MtlMaterial& material) {
+  for (const float channel : material.material.base_color)
+    if (!(channel >= 0 && channel <= 1)) throw std::logic_error("read a colour out of range");
 }
 
 std::string ply_header(const std::string& vertex_properties) {
@@ -68,11 +93,24 @@ std::vector<Bytes> ply_seeds() {
 }  // namespace
 
 const FuzzTarget& obj_target() {
-  static const FuzzTarget target = {"obj",
-                                    [](std::span<const unsigned char> bytes) {
-                                      require_sound(parse_obj("a.obj", text_of(bytes)));
-                                    },
-                                    obj_seeds};
+  static const FuzzTarget target = {
+      "obj",
+      [](std::span<const unsigned char> bytes) {
+        require_sound(parse_obj("a.obj", text_of(bytes), ObjContent::kShapeAndMaterials));
+      },
+      obj_seeds};
+  return target;
+}
+
+const FuzzTarget& mtl_target() {
+  static const FuzzTarget target = {
+      "mtl",
+      [](std::span<const unsigned char> bytes) {
+        std::vector<std::string> notes;
+        for (const MtlMaterial& material : parse_mtl("a.mtl", text_of(bytes), notes))
+          require_sound(material);
+      },
+      mtl_seeds};
   return target;
 }
 

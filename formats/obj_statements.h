@@ -1,0 +1,74 @@
+// The statements of Wavefront texts (.obj, .mtl): a keyword and words, mostly one to a line.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <string_view>
+
+namespace mdk::obj {
+
+inline bool is_gap(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n' || c == '\\'; }
+
+/// The words of one statement: blanks part them, and so does a backslash at the end of a line.
+class Words {
+ public:
+  explicit Words(std::string_view statement) : rest_(statement) {}
+
+  /// Empty at the end.
+  std::string_view next() {
+    skip_gaps();
+    std::size_t size = 0;
+    while (size < rest_.size() && !is_gap(rest_[size])) ++size;
+    const std::string_view word = rest_.substr(0, size);
+    rest_.remove_prefix(size);
+    return word;
+  }
+
+  /// All that is left, as a name that may have blanks within.
+  std::string_view rest() {
+    skip_gaps();
+    while (!rest_.empty() && is_gap(rest_.back())) rest_.remove_suffix(1);
+    return rest_;
+  }
+
+ private:
+  void skip_gaps() {
+    while (!rest_.empty() && is_gap(rest_.front())) rest_.remove_prefix(1);
+  }
+
+  std::string_view rest_;
+};
+
+/// Cuts the text into statements and counts the lines they start on.
+class Statements {
+ public:
+  explicit Statements(std::string_view text) : rest_(text) {}
+
+  bool next(std::string_view& statement) {
+    if (rest_.empty()) return false;
+    line_ = next_line_;
+    std::size_t end = 0;
+    while (end < rest_.size()) {
+      if (rest_[end] == '\n') {
+        ++next_line_;
+        if (!continues(end)) break;
+      }
+      ++end;
+    }
+    statement = rest_.substr(0, end);
+    rest_.remove_prefix(std::min(end + 1, rest_.size()));
+    return true;
+  }
+  std::size_t line() const { return line_; }
+
+ private:
+  bool continues(std::size_t end) const {
+    while (end > 0 && rest_[end - 1] == '\r') --end;
+    return end > 0 && rest_[end - 1] == '\\';
+  }
+
+  std::string_view rest_;
+  std::size_t line_ = 0, next_line_ = 1;
+};
+
+}  // namespace mdk::obj
