@@ -7,6 +7,7 @@
 
 #include "common/base/parallel.h"
 #include "common/math/affine_path.h"
+#include "common/trace/box_columns.h"
 #include "common/trace/cluster_trees.h"
 #include "common/trace/key_poses.h"
 
@@ -61,10 +62,16 @@ double world_slack(const Model& model, const Vec3d& origin) {
   return reach * 0x1p-19;
 }
 
-/// A cluster whose world box a ray meets.
-struct Candidate {
-  std::uint32_t cluster;
-  float enter;
+/// The hierarchies of a time segment's clusters, and the boxes around each, in local bases.
+struct SegmentTrees {
+  ClusterTrees trees;
+  std::vector<Aabb> bounds;  ///< K, empty for clusters without triangles
+
+  SegmentTrees(const Model& model, std::uint32_t segment)
+      : trees(build_cluster_trees(model, segment)) {
+    for (const WideBvh& tree : trees.trees)
+      bounds.push_back(tree.nodes.empty() ? Aabb{} : tree.nodes[0].box());
+  }
 };
 
 }  // namespace
@@ -73,65 +80,60 @@ class QueryMoment {
  public:
   KeyInterval at;
   VertexSource vertices;
-  const ClusterTrees* trees = nullptr;
-  std::vector<Aabb> world_boxes;
+  MovingBoxes boxes;
+  const SegmentTrees* segment = nullptr;
   std::vector<Affine3d> local_from_world;
 };
 
 struct RayQuery::State {
-  explicit State(const Model& m) : model(m), poses(m) {
-    for (std::uint32_t s = 0; s < m.segment_count(); ++s)
-      segments.push_back(build_cluster_trees(m, s));
+  explicit State(const Model& m) : model(m), poses(m), boxes(m) {
+    for (std::uint32_t s = 0; s < m.segment_count(); ++s) segments.emplace_back(m, s);
   }
 
-  /// Clusters whose boxes the ray meets are entered nearest first. `box_of` and `map_of` give a
-  /// cluster's world box and map at the ray's time.
-  template <class BoxOf, class MapOf>
-  void trace(const ScaledRay& scaled, const ClusterTrees& trees, const VertexSource& vertices,
-             RayAim aim, RayHit& hit, const BoxOf& box_of, const MapOf& map_of) const {
+  /// What a ray needs to know of its time.
+  struct Scene {
+    const SegmentTrees& segment;
+    VertexSource vertices;
+    MovingBoxes boxes;
+  };
+
+  /// Clusters whose boxes the ray meets are entered nearest first. `map_of` gives a cluster's map
+  /// at the ray's time.
+  template <class MapOf>
+  RayHit trace(const ScaledRay& scaled, float t_max, const Scene& scene, RayAim aim,
+               const MapOf& map_of) const {
+    RayHit hit = scaled.nothing_yet(t_max);
     const WorldRay& ray = scaled.ray;
     const double slack = world_slack(model, ray.origin);
     const BoxRay world = make_box_ray(ray.origin, ray.direction, Affine3d{}, model.bounds, slack);
-    thread_local std::vector<Candidate> met;
-    met.clear();
-    for (std::uint32_t c = 0; c < model.cluster_count(); ++c) {
-      const Aabb box = box_of(c);
-      if (box.empty() || trees.trees[c].nodes.empty()) continue;
-      const float enter = enter_box(world, box, hit.t);
-      if (enter <= hit.t && std::isfinite(enter)) met.push_back({c, enter});
-    }
-    std::sort(met.begin(), met.end(),
-              [](const Candidate& a, const Candidate& b) { return a.enter < b.enter; });
-    for (const Candidate& candidate : met) {
-      if (candidate.enter > hit.t) break;
-      const std::uint32_t c = candidate.cluster;
-      const WideBvh& tree = trees.trees[c];
-      const Aabb bounds = tree.nodes[0].box();
-      const BoxRay local = make_box_ray(ray.origin, ray.direction, map_of(c), bounds, slack);
+    thread_local std::vector<MetBox> met;
+    met.resize(std::max(met.size(), scene.boxes.count));
+    const std::size_t count = meet_boxes(world, scene.boxes, hit.t, met.data());
+    const ClusterTrees& trees = scene.segment.trees;
+    for (std::size_t i = 0; i < count && !(met[i].enter > hit.t); ++i) {
+      const std::uint32_t c = met[i].box;
+      const std::vector<WideBvhNode>& nodes = trees.trees[c].nodes;
+      if (nodes.empty()) continue;
+      const BoxRay local =
+          make_box_ray(ray.origin, ray.direction, map_of(c), scene.segment.bounds[c], slack);
       intersect_cluster(
-          ray, local, {tree.nodes, trees.blocks.data() + trees.first_leaf[c], vertices}, aim, hit);
-      if (aim == RayAim::kAny && hit.triangle != kNoHit) return;
+          ray, local, {nodes, trees.blocks.data() + trees.first_leaf[c], scene.vertices}, aim, hit);
+      if (aim == RayAim::kAny && hit.triangle != kNoHit) break;
     }
+    return hit;
   }
 
   RayHit trace_at(const ScaledRay& scaled, float t_max, const KeyInterval& at, RayAim aim) const {
-    RayHit hit = scaled.nothing_yet(t_max);
     const std::span<const Affine3f> from = model.key_maps(at.key0), to = model.key_maps(at.key1);
-    trace(
-        scaled, segments[segment_of(model, at)], vertices_at(poses, at), aim, hit,
-        [&](std::uint32_t c) { return cluster_world_box(model, c, at); },
-        [&](std::uint32_t c) { return interpolate(from[c], to[c], at.s); });
-    return hit;
+    return trace(scaled, t_max,
+                 {segments[segment_of(model, at)], vertices_at(poses, at), boxes.at(at)}, aim,
+                 [&](std::uint32_t c) { return interpolate(from[c], to[c], at.s); });
   }
 
   RayHit trace_at(const ScaledRay& scaled, float t_max, const QueryMoment& moment,
                   RayAim aim) const {
-    RayHit hit = scaled.nothing_yet(t_max);
-    trace(
-        scaled, *moment.trees, moment.vertices, aim, hit,
-        [&](std::uint32_t c) { return moment.world_boxes[c]; },
-        [&](std::uint32_t c) { return moment.local_from_world[c]; });
-    return hit;
+    return trace(scaled, t_max, {*moment.segment, moment.vertices, moment.boxes}, aim,
+                 [&](std::uint32_t c) { return moment.local_from_world[c]; });
   }
 
   template <class Moment>
@@ -148,7 +150,8 @@ struct RayQuery::State {
 
   const Model& model;
   KeyPoses poses;
-  std::vector<ClusterTrees> segments;
+  BoxColumns boxes;
+  std::vector<SegmentTrees> segments;
 };
 
 RayQuery::RayQuery(const Model& model) : state_(std::make_unique<State>(model)) {}
@@ -172,12 +175,11 @@ std::shared_ptr<const QueryMoment> RayQuery::prepare(const KeyInterval& at) cons
   auto moment = std::make_shared<QueryMoment>();
   moment->at = at;
   moment->vertices = vertices_at(state_->poses, at);
-  moment->trees = &state_->segments[segment_of(model, at)];
+  moment->boxes = state_->boxes.at(at);
+  moment->segment = &state_->segments[segment_of(model, at)];
   const std::span<const Affine3f> from = model.key_maps(at.key0), to = model.key_maps(at.key1);
-  for (std::uint32_t c = 0; c < model.cluster_count(); ++c) {
-    moment->world_boxes.push_back(cluster_world_box(model, c, at));
+  for (std::uint32_t c = 0; c < model.cluster_count(); ++c)
     moment->local_from_world.push_back(interpolate(from[c], to[c], at.s));
-  }
   return moment;
 }
 
@@ -198,8 +200,9 @@ void RayQuery::any_hits(std::span<const QueryRay> rays, std::span<const KeyInter
 }
 
 std::size_t RayQuery::structure_bytes() const {
-  std::size_t bytes = state_->poses.bytes();
-  for (const ClusterTrees& segment : state_->segments) bytes += segment.bytes();
+  std::size_t bytes = state_->poses.bytes() + state_->boxes.bytes();
+  for (const SegmentTrees& segment : state_->segments)
+    bytes += segment.trees.bytes() + segment.bounds.size() * sizeof(Aabb);
   return bytes;
 }
 

@@ -56,6 +56,27 @@ struct Weight {
   DoubleVec error;  ///< no less than what rounding may have done to the value
 };
 
+/// Where a ray is inside the slabs of as many boxes as a vector has lanes.
+template <class Tag>
+struct Slabs {
+  hn::Vec<Tag> near, far;
+
+  Slabs(Tag d, float t_max) : near(hn::Zero(d)), far(hn::Set(d, t_max)) {}
+  HWY_INLINE void cut(Tag d, const BoxRay& ray, std::size_t axis, hn::Vec<Tag> low_side,
+                      hn::Vec<Tag> high_side) {
+    const auto inverse = hn::Set(d, ray.inverse[axis]);
+    const auto low = hn::Mul(hn::Sub(low_side, hn::Set(d, ray.origin_for_low[axis])), inverse);
+    const auto high = hn::Mul(hn::Sub(high_side, hn::Set(d, ray.origin_for_high[axis])), inverse);
+    near = hn::Max(near, hn::Min(low, high));
+    far = hn::Min(far, hn::Max(low, high));
+  }
+  HWY_INLINE std::uint32_t met(Tag d) const {
+    alignas(8) std::uint8_t bits[8] = {};
+    hn::StoreMaskBits(d, hn::Le(near, far), bits);
+    return bits[0] | std::uint32_t{bits[1]} << 8;
+  }
+};
+
 /// ((b - a) x (b + a)) . d; `rounding` is kRounding times the largest component of d.
 HWY_INLINE Weight edge_weight(const DoublePoints& a, const DoublePoints& b, const DoublePoints& d,
                               DoubleVec rounding) {
@@ -115,22 +136,12 @@ class RayWalk {
     alignas(64) float enter[kBvhWidth];
     std::uint32_t met = 0;
     for (std::size_t first = 0; first < kBvhWidth; first += hn::Lanes(d)) {
-      auto near = hn::Zero(d), far = hn::Set(d, hit_.t);
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        const auto inverse = hn::Set(d, local.inverse[axis]);
-        const auto low = hn::Mul(hn::Sub(hn::Load(d, node.bounds[2 * axis] + first),
-                                         hn::Set(d, local.origin_for_low[axis])),
-                                 inverse);
-        const auto high = hn::Mul(hn::Sub(hn::Load(d, node.bounds[2 * axis + 1] + first),
-                                          hn::Set(d, local.origin_for_high[axis])),
-                                  inverse);
-        near = hn::Max(near, hn::Min(low, high));
-        far = hn::Min(far, hn::Max(low, high));
-      }
-      hn::Store(near, d, enter + first);
-      alignas(8) std::uint8_t bits[8] = {};
-      hn::StoreMaskBits(d, hn::Le(near, far), bits);
-      met |= std::uint32_t{bits[0]} << first;
+      Slabs<FloatTag> slabs(d, hit_.t);
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        slabs.cut(d, local, axis, hn::Load(d, node.bounds[2 * axis] + first),
+                  hn::Load(d, node.bounds[2 * axis + 1] + first));
+      hn::Store(slabs.near, d, enter + first);
+      met |= slabs.met(d) << first;
     }
     const std::size_t bottom = size;
     for (met &= (1u << node.count) - 1; met != 0; met &= met - 1) {
@@ -211,6 +222,34 @@ class RayWalk {
   Entry stack_[kStackSize];
 };
 
+std::size_t Meet(const BoxRay& ray, const MovingBoxes& boxes, float t_max, MetBox* met) {
+  const hn::CappedTag<float, kMovingBoxLanes> d;
+  const auto s = hn::Set(d, boxes.s);
+  const auto row_at = [&](std::size_t row, std::size_t first) {
+    const auto from = hn::LoadU(d, boxes.from + row * boxes.stride + first);
+    const auto to = hn::LoadU(d, boxes.to + row * boxes.stride + first);
+    return hn::Add(from, hn::Mul(hn::Sub(to, from), s));
+  };
+  alignas(64) float enter[kMovingBoxLanes];
+  std::size_t count = 0;
+  for (std::size_t first = 0; first < boxes.count; first += hn::Lanes(d)) {
+    Slabs<decltype(d)> slabs(d, t_max);
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      slabs.cut(d, ray, axis, row_at(2 * axis, first), row_at(2 * axis + 1, first));
+    std::uint32_t lanes = slabs.met(d);
+    if (boxes.count - first < hn::Lanes(d)) lanes &= (1u << (boxes.count - first)) - 1;
+    if (lanes == 0) continue;
+    hn::Store(slabs.near, d, enter);
+    for (; lanes != 0; lanes &= lanes - 1) {
+      const auto lane = static_cast<std::uint32_t>(__builtin_ctz(lanes));
+      std::size_t place = count++;
+      for (; place > 0 && met[place - 1].enter > enter[lane]; --place) met[place] = met[place - 1];
+      met[place] = {static_cast<std::uint32_t>(first) + lane, enter[lane]};
+    }
+  }
+  return count;
+}
+
 void Cluster(const WorldRay& ray, const BoxRay& local, const ClusterQuery& cluster, RayAim aim,
              RayHit& hit) {
   RayWalk(ray, cluster.vertices, hit).walk(cluster.nodes, cluster.blocks, local, aim);
@@ -229,6 +268,7 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace mdk {
 
+HWY_EXPORT(Meet);
 HWY_EXPORT(Cluster);
 HWY_EXPORT(Blocks);
 
@@ -258,15 +298,8 @@ BoxRay make_box_ray(const Vec3d& origin, const Vec3d& direction, const Affine3d&
   return ray;
 }
 
-float enter_box(const BoxRay& ray, const Aabb& box, float t_max) {
-  float near = 0, far = t_max;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const float low = (box.lo[k] - ray.origin_for_low[k]) * ray.inverse[k];
-    const float high = (box.hi[k] - ray.origin_for_high[k]) * ray.inverse[k];
-    near = std::max(near, std::min(low, high));
-    far = std::min(far, std::max(low, high));
-  }
-  return near <= far ? near : std::numeric_limits<float>::infinity();
+std::size_t meet_boxes(const BoxRay& ray, const MovingBoxes& boxes, float t_max, MetBox* met) {
+  return HWY_DYNAMIC_DISPATCH(Meet)(ray, boxes, t_max, met);
 }
 
 void intersect_cluster(const WorldRay& ray, const BoxRay& local, const ClusterQuery& cluster,

@@ -1,8 +1,9 @@
-// One ray at a time through a cluster's eight-wide hierarchy: eight boxes, then eight triangles at
-// once. docs/ray-queries.md tells why no ray slips between two triangles and why no box hides a
-// hit.
+// One ray at a time: which clusters it meets, sixteen boxes at once, then through a cluster's
+// eight-wide hierarchy: eight boxes, then eight triangles at once. docs/ray-queries.md tells why no
+// ray slips between two triangles and why no box hides a hit.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <span>
@@ -25,8 +26,25 @@ struct BoxRay {
 BoxRay make_box_ray(const Vec3d& origin, const Vec3d& direction, const Affine3d& local_from_world,
                     const Aabb& bounds, double world_slack);
 
-/// Where the ray enters the box, or infinity where it misses it or enters past `t_max`.
-float enter_box(const BoxRay& ray, const Aabb& box, float t_max);
+/// Boxes at s between two moments, a column each: rows low x, high x, low y, high y, low z, high z
+/// of `stride` floats, a multiple of kMovingBoxLanes, of which `count` are boxes.
+inline constexpr std::size_t kMovingBoxLanes = 16;
+struct MovingBoxes {
+  const float* from;
+  const float* to;
+  float s;
+  std::size_t count, stride;
+};
+
+/// A box that a ray meets, and where it enters.
+struct MetBox {
+  std::uint32_t box;
+  float enter;
+};
+
+/// The boxes that the ray enters before `t_max`, the nearest first, into `met`, which has room for
+/// all. Returns how many.
+std::size_t meet_boxes(const BoxRay& ray, const MovingBoxes& boxes, float t_max, MetBox* met);
 
 /// Where the vertices are: at s between two poses, as PosedMesh has them.
 struct VertexSource {
