@@ -35,6 +35,7 @@ struct Mood {
   double look = 0;    ///< turns of the head about the neck
   double fright = 0;  ///< the neck is at its longest at 1
   double ooze = 0;    ///< the eyes follow the fright, later and longer
+  double ruffle = 0;  ///< every feather stands up
   double dizzy = 0;
 };
 
@@ -48,8 +49,21 @@ Mood mood_at(double key) {
   mood.fright = pulse(key, 226, 240, 256, 276);
   mood.fright += 0.16 * sine((key - 240) / 9) * pulse(key, 238, 244, 262, 284);
   mood.ooze = pulse(key, 236, 254, 264, 292);
+  mood.ruffle = pulse(key, 228, 236, 258, 282);
   mood.dizzy = pulse(key, 280, 290, 310, 350);
   return mood;
+}
+
+/// Three waves of different lengths run through the plumage, so that no part of it moves as one.
+Vec3d ruffle(const Vec3d& p, const Mood& mood) {
+  const double feathers =
+      smooth_step(0.12, kHip, p.y) * (1 - 0.6 * smooth_step(kNeckBase.y, kNeckTop.y, p.y));
+  const double wave[3] = {sine(3.1 * p.y + 2.3 * p.x - mood.key / 9),
+                          sine(4.3 * p.x - 2.9 * p.z + mood.key / 7),
+                          sine(3.7 * p.z + 2.1 * p.y + mood.key / 8)};
+  const Vec3d up{0.03 * wave[1] + 0.015 * wave[2], 0.03 * wave[2] + 0.015 * wave[0],
+                 0.03 * wave[0] + 0.015 * wave[1]};
+  return p + up * (mood.ruffle * feathers);
 }
 
 Vec3d flap_wing(const Vec3d& p, const Mood& mood) {
@@ -119,7 +133,7 @@ Vec3d posed(const Vec3d& p, Part part, const Mood& mood) {
     const Vec3d center{kEye.x, kEye.y, p.z < 0 ? -kEye.z : kEye.z};
     return breathe(stretch_neck(center, mood), mood) + (ooze_eye(p, mood) - center);
   }
-  q = step_leg(flap_wing(p, mood), mood);
+  q = step_leg(flap_wing(ruffle(p, mood), mood), mood);
   return breathe(stretch_neck(q, mood), mood);
 }
 

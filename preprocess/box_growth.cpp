@@ -12,6 +12,8 @@ namespace mdk {
 namespace {
 
 constexpr std::uint32_t kFewClusters = 8;  // with more, a stage that saves nothing is the last
+constexpr LloydOptions kPolish = {.min_gain = 0.0005, .max_rounds = 4};
+constexpr std::uint32_t kPolishShare = 10;  // at most one cluster in so many is cut at a time
 
 BoxGrowthStep describe(const BoxProblem& problem, const BoxClustering& clustering) {
   double residual = 0, area = 0;
@@ -66,6 +68,20 @@ BoxClustering next_stage(const BoxProblem& problem, const BoxClustering& cluster
   return next;
 }
 
+/// One careful round: relaxed to rest, rid of what does not pay, and cut in a few places, which
+/// stays only where it has paid after all moved.
+BoxClustering polished(const BoxProblem& problem, const BoxClustering& clustering,
+                       const BoxGrowthOptions& options) {
+  BoxClustering next = dissolve_clusters(problem, relax_boxes(problem, clustering, kPolish));
+  const std::uint32_t count = next.cluster_count();
+  const std::uint32_t room = options.limit - std::min(options.limit, count);
+  BoxClustering cut = make_splits(problem, next, find_splits(problem, next),
+                                  std::min(room, count / kPolishShare + 1), 0);
+  if (cut.cluster_count() == count) return next;
+  cut = relax_boxes(problem, std::move(cut), kPolish);
+  return cut.cost < next.cost ? cut : next;
+}
+
 }  // namespace
 
 BoxGrowth grow_boxes(const BoxProblem& problem, std::vector<std::uint32_t> start,
@@ -80,23 +96,28 @@ BoxGrowth grow_boxes(const BoxProblem& problem, std::vector<std::uint32_t> start
     on_step(growth.steps.back());
   };
   record();
-  const std::uint32_t most = options.clusters != 0 ? options.clusters : options.limit;
-  while (state.cluster_count() < most) {
-    BoxClustering next = next_stage(problem, state, options);
+  const auto advance = [&](BoxClustering next) {  // whether it pays to go on
     const double gain = state.cost - next.cost;
-    if (!(gain > 0)) break;
-    const bool last = gain < options.least_stage_gain * state.cost;
+    if (!(gain > 0)) return false;
+    const bool is_last = gain < options.least_stage_gain * state.cost;
     state = std::move(next);
     record();
-    if (last) break;
+    return !is_last;
+  };
+  const bool is_free = options.clusters == 0;
+  const std::uint32_t most = is_free ? options.limit : options.clusters;
+  while (state.cluster_count() < most && advance(next_stage(problem, state, options))) {
   }
-  if (options.clusters != 0) {
+  const int rounds = is_free ? options.polish_rounds : 0;
+  for (int round = 0; round < rounds && state.cluster_count() < most; ++round)
+    if (!advance(polished(problem, state, options))) break;
+  if (!is_free) {
     growth.stop_reason = "count";
-    if (state.cluster_count() < options.clusters) {
-      state = filled_up(problem, std::move(state), options.clusters);
+    if (state.cluster_count() < most) {
+      state = filled_up(problem, std::move(state), most);
       record();
     }
-  } else if (state.cluster_count() >= options.limit) {
+  } else if (state.cluster_count() >= most) {
     growth.stop_reason = "limit";
   }
   return growth;

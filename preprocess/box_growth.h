@@ -18,6 +18,7 @@ struct BoxGrowthOptions {
   int leaps = 3;                    ///< doublings that may raise the cost before growth gives up
   double least_stage_gain = 0.005;  ///< share of the cost that a stage must save to go on
   LloydOptions relax{.min_gain = 0.005, .max_rounds = 3};
+  int polish_rounds = 0;  ///< of careful cuts at the end, where growth ended because of the cost
 };
 
 struct BoxGrowthStep {

@@ -23,7 +23,7 @@ namespace {
 constexpr std::uint32_t kRoughKeys = 32, kRoughClusters = 32;
 constexpr std::size_t kWholeTriangles = 24'000;  // larger meshes are thinned to...
 constexpr std::size_t kThinTriangles = 6'000;    // ...so many, which rarely share vertices
-constexpr std::size_t kFineEntries = 500'000, kLeastFineKeys = 16;
+constexpr std::size_t kFineEntries = 400'000, kLeastFineKeys = 16;
 constexpr std::size_t kRestCandidates = 2;
 
 // The paper's way.
@@ -176,6 +176,7 @@ MotionClusters cluster_by_boxes(const PoseSequence& sequence, const DecomposeOpt
   BoxGrowthOptions growth_options;
   growth_options.clusters = options.clusters;
   growth_options.relax.max_rounds = 2;
+  growth_options.polish_rounds = 2;
   const BoxGrowth growth =
       grow_boxes(problem, std::move(rough.cluster_of_triangle), growth_options, on_step);
 

@@ -1,6 +1,7 @@
 // What a random ray costs: times rays that meet each model's box as the cost of a decomposition
 // counts them (docs/method.md, cost), that is lines without a preferred place or direction, and
-// prints a line per file: its name, clusters, nanoseconds a ray, and the share of rays that hit.
+// prints a line per file: its name, its clusters, how many of them a ray is expected to meet,
+// nanoseconds a ray, and the share of rays that hit.
 //
 //     random_rays_bench FILE.mdk…
 #include <algorithm>
@@ -57,14 +58,22 @@ std::vector<mdk::QueryRay> random_lines(const mdk::Aabb& box, std::mt19937_64& e
   return rays;
 }
 
+/// Clusters whose world boxes a line is expected to meet that meets the model's box.
+double clusters_met(const mdk::Model& model, std::uint32_t key, const mdk::Aabb& box) {
+  double area = 0;
+  for (const mdk::Aabb& b : model.key_world_boxes(key)) area += b.surface_area();
+  return area / box.surface_area();
+}
+
 struct Cost {
+  double met = 0;          ///< clusters
   double nanoseconds = 0;  ///< a ray
   double hits = 0;         ///< share of the rays
 };
 
 Cost cost_of(const mdk::RayQuery& query, const std::vector<mdk::QueryRay>& rays,
              const mdk::QueryMoment& moment) {
-  Cost cost{std::numeric_limits<double>::infinity(), 0};
+  Cost cost{0, std::numeric_limits<double>::infinity(), 0};
   for (int round = 0; round < kRounds; ++round) {
     int hits = 0;
     const auto start = std::chrono::steady_clock::now();
@@ -86,14 +95,17 @@ void measure(const char* path) {
   const std::uint32_t keys = std::min(kKeys, model.key_count());
   Cost mean;
   for (std::uint32_t i = 0; i < keys; ++i) {
-    const mdk::KeyInterval at = mdk::at_key(i * model.key_count() / keys);
+    const std::uint32_t key = i * model.key_count() / keys;
+    const mdk::KeyInterval at = mdk::at_key(key);
+    const mdk::Aabb box = box_at(mesh, at);
     const auto moment = query.prepare(at);
-    const Cost cost = cost_of(query, random_lines(box_at(mesh, at), engine), *moment);
+    const Cost cost = cost_of(query, random_lines(box, engine), *moment);
+    mean.met += clusters_met(model, key, box) / keys;
     mean.nanoseconds += cost.nanoseconds / keys;
     mean.hits += cost.hits / keys;
   }
-  std::printf("%s %u %.1f %.4f\n", std::filesystem::path(path).stem().c_str(),
-              model.cluster_count(), mean.nanoseconds, mean.hits);
+  std::printf("%s %u %.3f %.1f %.4f\n", std::filesystem::path(path).stem().c_str(),
+              model.cluster_count(), mean.met, mean.nanoseconds, mean.hits);
   std::fflush(stdout);
 }
 
