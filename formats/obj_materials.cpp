@@ -20,6 +20,7 @@ namespace mdk {
 namespace {
 
 constexpr std::size_t kMaxMtlBytes = std::size_t{64} << 20;
+constexpr std::size_t kMostNotes = 100;  // nobody reads more
 
 /// Names are written on all systems.
 std::string with_slashes(std::string_view name) {
@@ -61,8 +62,9 @@ class MtlParser {
       const std::string_view word = words.next();
       channels[c] = c > 0 && word.empty() ? channels[0] : parsed<double>(word);
       if (channels[c] && std::isfinite(*channels[c])) continue;
-      notes_.push_back(path_ + ": line " + std::to_string(line) +
-                       " has a colour that cannot be read; grey is shown");
+      if (!std::exchange(has_noted_color_, true))
+        notes_.push_back(path_ + ": line " + std::to_string(line) +
+                         " has a colour that cannot be read; grey is shown");
       return;
     }
     for (std::size_t c = 0; c < 3; ++c)
@@ -78,7 +80,7 @@ class MtlParser {
       for (obj::Words next = words; is_option_value(next.next()); next = words) words.next();
     }
     materials_.back().map_kd = words.rest();
-    if (has_options)
+    if (has_options && !std::exchange(has_noted_options_, true))
       notes_.push_back(path_ + ": the options of a map_Kd are left out; its image is shown");
   }
 
@@ -88,6 +90,7 @@ class MtlParser {
 
   const std::string& path_;
   std::vector<std::string>& notes_;
+  bool has_noted_color_ = false, has_noted_options_ = false;  ///< one note a file, however broken
   std::vector<MtlMaterial> materials_;
 };
 
@@ -121,6 +124,7 @@ class AppearanceReader {
   };
 
   void note(const std::string& sentence) {
+    if (result_.notes.size() >= kMostNotes) return;
     if (std::ranges::find(result_.notes, sentence) == result_.notes.end())
       result_.notes.push_back(sentence);
   }

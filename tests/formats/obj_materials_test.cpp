@@ -130,10 +130,25 @@ TEST_F(ObjMaterials, ABrokenNumberOrImageIsANoteAndPlainColour) {
   EXPECT_THAT(appearance.materials[2].base_color, ElementsAre(1, 0, 0, 1));
   EXPECT_THAT(result.notes,
               testing::IsSupersetOf({HasSubstr("line 2 has a colour that cannot be read"),
-                                     HasSubstr("line 5 has a colour that cannot be read"),
                                      HasSubstr("\"bad.png\" is neither PNG nor JPEG"),
                                      HasSubstr("\"gone.png\" cannot be read")}));
   EXPECT_THAT(result.unread, ElementsAre(EndsWith("gone.png")));
+}
+
+TEST_F(ObjMaterials, AFileBrokenInEveryLineIsOneNoteOfEachKind) {
+  std::string text = "newmtl red\n";
+  for (int i = 0; i < 1000; ++i) text += "Kd red\nmap_Kd -s 2 a.png\n";
+  put("a.mtl", text);
+  EXPECT_EQ(read("mtllib a.mtl\n" + kSquare + kRedFace).notes.size(), 3u) << "and no a.png";
+}
+
+TEST_F(ObjMaterials, AMeshOfManyUnknownMaterialsIsReadWithAHundredNotes) {
+  put("a.mtl", "newmtl red\n");
+  std::string text = "mtllib a.mtl\n" + kSquare;
+  for (int i = 0; i < 20'000; ++i) text += "usemtl m" + std::to_string(i) + "\nf 1 2 3\n";
+  const ReadResult result = read(text);
+  EXPECT_EQ(result.notes.size(), 100u);
+  EXPECT_EQ(result.sequence.appearance.materials.size(), 20'000u);
 }
 
 TEST_F(ObjMaterials, NothingOutsideTheFolderIsOpened) {
