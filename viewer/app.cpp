@@ -26,6 +26,7 @@ constexpr double kIdleSeconds = 1.0;
 constexpr double kNoticeSeconds = 4;
 constexpr double kCurveSeconds = 0.2;     // between drawings of a growing curve
 constexpr double kTurntableSeconds = 14;  // once round
+constexpr double kMappingSeconds = 0.02;  // a file that takes longer comes after the window
 constexpr double kLookSeconds = 0.5;      // between looks at the files on disk
 
 }  // namespace
@@ -34,12 +35,9 @@ App::App(const ViewerOptions& options)
     : options_(options),
       session_path_(session_path(options)),
       saved_(read_session(session_path_)),
-      window_(options.size.value_or(saved_.window.value_or(WindowSize{})),
-              options.size || saved_.window ? SizeUnit::kExact : SizeUnit::kScaled),
-      theme_(make_theme(window_.ui_scale(), window_.pixel_ratio())),
-      loader_(&Window::wake),
-      export_(&Window::wake),
-      worker_(&Window::wake) {
+      loader_([this] { wake(); }),
+      export_([this] { wake(); }),
+      worker_([this] { wake(); }) {
   recall();
   if (!options_.technique.empty()) state_.settings.technique = technique_row(options_.technique);
   if (options_.shading) state_.settings.shading = *options_.shading;
@@ -52,7 +50,51 @@ App::App(const ViewerOptions& options)
       options_.against.empty() ? default_against() : technique_row(options_.against);
   if (options_.random_events > 0)
     hand_.emplace(options_.random_events, options_.seed, what_lies_here());
-  if (!options_.file.empty()) open({options_.file});
+  if (!options_.file.empty()) begin_first_picture();
+  open_window();
+}
+
+// To open a window takes longer than to map a file and trace a picture of it: a worker does that
+// meanwhile, in the size that the window will most likely have.
+void App::begin_first_picture() {
+  const WindowSize size = window_size();
+  expected_shape_ = {static_cast<float>(size.width), static_cast<float>(size.height)};
+  open({options_.file});
+  loader_.wait(kMappingSeconds);
+  show_loaded_scene();
+  request_picture(Repeat::kNever);
+}
+
+WindowSize App::window_size() const {
+  return options_.size.value_or(saved_.window.value_or(WindowSize{}));
+}
+
+void App::open_window() {
+  window_.emplace(window_size(),
+                  options_.size || saved_.window ? SizeUnit::kExact : SizeUnit::kScaled);
+  can_wake_ = true;
+  theme_ = make_theme(ui_scale(), shape().pixel_ratio);
+  blit_.emplace();
+  clock_ = {};
+  name_window();
+  if (state_.file) remember();
+}
+
+void App::name_window() {
+  if (window_ && state_.file) window_->set_title(state_.file_name + " - mdview");
+}
+
+void App::wake() {
+  if (can_wake_) Window::wake();
+}
+
+// Text and widgets keep their size to the eye when the window comes to another display.
+void App::follow_display() {
+  const float scale = ui_scale(), ratio = shape().pixel_ratio;
+  if (scale == theme_.scale && ratio == theme_.pixel_ratio) return;
+  theme_ = make_theme(scale, ratio);
+  window_->renew_fonts();
+  redraws_ = kSettlingDraws;
 }
 
 void App::show_loaded_scene() {
@@ -75,20 +117,21 @@ void App::show_loaded_scene() {
   state_.picked.reset();
   state_.residuals = {};
   full_picture_ms_ = 0;
-  window_.set_title(state_.file_name + " - mdview");
+  name_window();
   if (scene->is_again) {
     state_.playback.set_clips(clip_times(state_.file->model()));
     state_.hand = rest_pose_of(state_.file->model());
     show_notice("Loaded " + state_.file_name + " again: it has changed");
     return;
   }
+  open_ms_ = 0;
   state_.playback = Playback(clip_times(state_.file->model()));
   state_.playback.set_loop(saved_.loop);
   state_.playback.set_speed(saved_.speed);
   remember_file(state_.recent_files, loader_.paths());
   remember();
   state_.hand = rest_pose_of(state_.file->model());
-  blit_.clear();
+  if (blit_) blit_->clear();
   reset_view();
   apply_options();
 }
@@ -126,8 +169,8 @@ void App::show_notice(const std::string& sentence) {
 }
 
 int App::run() {
-  while (!quit_ && !window_.should_close()) {
-    window_.wait_events(seconds_to_wait());
+  while (!quit_ && !window_->should_close()) {
+    window_->wait_events(seconds_to_wait());
     const double now = clock_.seconds();
     pass_time(now - last_event_time_);
     last_event_time_ = now;
@@ -154,14 +197,14 @@ void App::pass_time(double seconds) {
 }
 
 void App::handle_events() {
-  if (window_.take_activity()) {
+  if (window_->take_activity()) {
     redraws_ = kSettlingDraws;
     last_activity_time_ = clock_.seconds();
     costs_wait_ = true;
   }
-  for (const KeyEvent& event : window_.take_keys())
+  for (const KeyEvent& event : window_->take_keys())
     if (const auto action = action_for(event)) execute(*action);
-  if (const auto drops = window_.take_drops(); !drops.empty()) {
+  if (const auto drops = window_->take_drops(); !drops.empty()) {
     state_.file_menu.reset();
     open(drops);
   }
@@ -196,7 +239,7 @@ void App::show_finished_frame() {
 
 void App::upload_picture() {
   const Picture& picture = shown_.picture();
-  blit_.upload(picture.pixels, picture.width, picture.height);
+  blit_->upload(picture.pixels, picture.width, picture.height);
 }
 
 void App::update_shown_rate() {
@@ -257,24 +300,32 @@ void App::survey_costs() {
 }
 
 // Waits for the picture of the state as it is, so that what is printed and saved belongs together.
+// A user who quits does not wait for a bake.
 void App::settle() {
   motion_ = Motion::kStill;
   while (true) {
-    const bool busy = worker_.busy() || loader_.busy();
+    const bool busy = worker_.busy() || (scripted() && loader_.busy());
     show_loaded_scene();
     show_finished_frame();
     if (!request_picture(Repeat::kNever) && !busy) return;
-    window_.wait_events(kDrawSeconds);
+    window_->wait_events(kDrawSeconds);
   }
 }
 
+WindowShape App::shape() const { return window_ ? window_->shape() : expected_shape_; }
+
+float App::ui_scale() const {
+  return shape().ui_scale * static_cast<float>(state_.settings.text_percent) / 100;
+}
+
 Layout App::layout() const {
-  return make_layout(window_.width(), window_.height(), theme_.scale, state_.panel);
+  const WindowShape window = shape();
+  return make_layout(window.width, window.height, ui_scale(), state_.panel);
 }
 
 PixelRect App::picture_pixels() const {
   const Rect picture = layout().picture;
-  const float ratio = window_.pixel_ratio();
+  const float ratio = shape().pixel_ratio;
   const auto pixels = [&](float length) {
     return std::clamp(static_cast<int>(std::lround(length * ratio)), 1,
                       static_cast<int>(kMaxImageSide));
@@ -308,10 +359,11 @@ void App::draw() {
   last_draw_time_ = clock_.seconds();
   ++window_draws_;
   redraws_ = std::max(0, redraws_ - 1);
+  follow_display();
   set_colors(state_.settings.colors);
-  window_.begin_frame();
+  window_->begin_frame();
   if (shown_.arrange(state_.compare)) upload_picture();
-  blit_.draw(picture_pixels(), window_.framebuffer_height());
+  blit_->draw(picture_pixels(), window_->framebuffer_height());
 
   UiResult result;
   const Layout places = layout();
@@ -327,16 +379,18 @@ void App::draw() {
   const bool steered = state_.file && steer_by_mouse(state_.camera, places.picture);
   if (pick_by_mouse(state_, places.picture)) redraws_ = kSettlingDraws;
   motion_ = steered || state_.playback.scrubbing() ? Motion::kDragging : Motion::kStill;
-  window_.end_frame();
+  window_->end_frame();
 
   widgets_ = std::move(result.widgets);
   if (save_window_) save_window();
   for (const Action& action : result.actions) execute(action);
   if (!result.open_paths.empty()) open(result.open_paths);
   request_picture(Repeat::kAsChosen);
-  window_.present();
-  if (first_picture_ms_ == 0 && !shown_.picture().pixels.empty())
-    first_picture_ms_ = since_start_.milliseconds();
+  window_->present();
+  if (!shown_.picture().pixels.empty()) {
+    if (first_picture_ms_ == 0) first_picture_ms_ = since_start_.milliseconds();
+    if (open_ms_ == 0) open_ms_ = since_asked_.milliseconds();
+  }
   // A scripted run with nothing to trace still comes to its end.
   const bool nothing_comes = !loader_.busy() && (!state_.file || requests_.failed());
   if (scripted() && nothing_comes && !quit_) ++frames_shown_;

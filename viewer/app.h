@@ -2,6 +2,7 @@
 // window is drawn when something is new, and sleeps when nothing is.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <deque>
 #include <optional>
@@ -41,6 +42,13 @@ class App {
  private:
   static constexpr int kSettlingDraws = 3;  ///< ImGui needs a few to settle after an event
 
+  WindowSize window_size() const;
+  void begin_first_picture();
+  void open_window();
+  void name_window();
+  void wake();
+  void follow_display();
+
   void show_loaded_scene();
   void look_for_changes();
   void apply_options();
@@ -73,6 +81,8 @@ class App {
   void settle();
   void survey_costs();
 
+  WindowShape shape() const;
+  float ui_scale() const;
   Layout layout() const;
   PixelRect picture_pixels() const;
   double picture_aspect() const;
@@ -92,14 +102,17 @@ class App {
   ViewerOptions options_;
   std::string session_path_;  ///< empty: nothing is kept
   SavedSession saved_;
-  Window window_;
+  WindowShape expected_shape_;    ///< while there is no window
+  std::optional<Window> window_;  // before the loader and the worker, who wake it
+  std::optional<TextureBlit> blit_;
+  std::atomic<bool> can_wake_ = false;
   Theme theme_;
-  TextureBlit blit_;
   ViewState state_;
   WidgetMap widgets_;
   ErrorCode error_code_ = ErrorCode::kInternal;  ///< of state_.error, where one stands
 
   Stopwatch clock_;             ///< since the window opened
+  Stopwatch since_asked_;       ///< for the file that is shown or on its way
   double last_event_time_ = 0;  ///< when time was last let pass
   double last_draw_time_ = -1;
   double notice_until_ = 0;
@@ -120,6 +133,7 @@ class App {
 
   std::optional<RandomHand> hand_;
   double first_picture_ms_ = 0;  ///< from the program's start; 0: none yet
+  double open_ms_ = 0;           ///< from asking for the file to its first picture; 0: none yet
   SceneLoader loader_;
   SequenceExport export_;
   RenderWorker

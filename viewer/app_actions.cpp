@@ -96,6 +96,12 @@ void App::execute(const Action& action) {
       state_.settings.colors =
           state_.settings.colors == ColorScheme::kDark ? ColorScheme::kLight : ColorScheme::kDark;
       break;
+    case Command::kLargerText:
+      state_.settings.step_text_size(+1);
+      break;
+    case Command::kSmallerText:
+      state_.settings.step_text_size(-1);
+      break;
     case Command::kTogglePanel:
       state_.panel = state_.panel == PanelMode::kShown ? PanelMode::kHidden : PanelMode::kShown;
       break;
@@ -137,7 +143,7 @@ std::string App::render_command_of_picture() const {
 
 void App::copy_render_command() {
   const std::string command = render_command_of_picture();
-  if (!command.empty()) window_.set_clipboard(command);
+  if (!command.empty()) window_->set_clipboard(command);
   show_notice(
       command.empty()
           ? "No mdprep command makes this picture: it is posed by hand, or parts are left out"
@@ -145,6 +151,7 @@ void App::copy_render_command() {
 }
 
 void App::open(const std::vector<std::string>& paths) {
+  since_asked_ = {};
   std::error_code failure;
   if (paths.size() != 1 || !std::filesystem::is_directory(paths.front(), failure)) {
     loader_.load(paths);
@@ -221,7 +228,7 @@ void App::save_picture() {
 
 void App::save_window() {
   save_window_ = false;
-  save(window_.read_pixels());
+  save(window_->read_pixels());
 }
 
 void App::save(const Picture& picture) {

@@ -17,12 +17,13 @@ void App::recall() {
 }
 
 void App::remember() const {
-  if (session_path_.empty()) return;
+  if (session_path_.empty() || !window_) return;
   const auto side = [](float length) {
     return std::clamp(static_cast<std::uint32_t>(length), kMinWindowSide, kMaxImageSide);
   };
   SavedSession session;
-  session.window = WindowSize{side(window_.width()), side(window_.height())};
+  const WindowShape shape = window_->shape();
+  session.window = WindowSize{side(shape.width), side(shape.height)};
   session.settings = state_.settings;
   session.loop = state_.file ? state_.playback.loop() : saved_.loop;
   session.speed = state_.file ? state_.playback.speed() : saved_.speed;
@@ -35,7 +36,7 @@ void App::play_random_event() {
   if (hand_->done())
     quit_ = true;
   else
-    window_.play(hand_->next(widgets_, window_.width(), window_.height()));
+    window_->play(hand_->next(widgets_, window_->shape().width, window_->shape().height));
 }
 
 // What a random hand may drop on the window.
@@ -56,14 +57,14 @@ void App::finish() {
   if (!options_.screenshot.empty() || options_.print_state) settle();
   if (!options_.screenshot.empty()) {
     for (int i = 0; i < kSettlingDraws; ++i) draw();  // the last frame's figures, settled
-    const Picture picture = window_.read_pixels();
+    const Picture picture = window_->read_pixels();
     write_png(options_.screenshot, picture.width, picture.height, picture.pixels);
   }
   if (options_.print_state) {
     if (scripted()) draw();  // so that the widgets told of are those of the last frame
-    std::cout << state_json(state_,
-                            {frames_shown_, window_draws_, window_.width(), window_.height(),
-                             widgets_, first_picture_ms_, render_command_of_picture()})
+    std::cout << state_json(state_, {frames_shown_, window_draws_, window_->shape().width,
+                                     window_->shape().height, widgets_, first_picture_ms_, open_ms_,
+                                     render_command_of_picture()})
               << std::endl;
   }
 }

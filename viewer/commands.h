@@ -37,6 +37,8 @@ enum class Command {
   kClearRange,
   kToggleTurntable,
   kToggleColors,
+  kLargerText,
+  kSmallerText,
   kTogglePanel,
   kToggleHelp,
   kDismiss,  ///< closes what stands open, or cancels what is in work; else quits

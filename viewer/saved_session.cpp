@@ -33,6 +33,7 @@ Json session_json(const SavedSession& session) {
   for (const ShadingInfo& info : shading_table())
     if (info.mode == settings.shading) json["shading"] = info.id;
   json["light"] = settings.colors == ColorScheme::kLight;
+  json["text_percent"] = settings.text_percent;
   json["count_work"] = settings.count_work;
   json["resolution"] = static_cast<int>(settings.resolution);
   json["loop"] = static_cast<int>(session.loop);
@@ -104,6 +105,9 @@ SavedSession session_of(const Json& json) {
   for (const ShadingInfo& info : shading_table())
     if (shading && info.id == *shading) settings.shading = info.mode;
   if (value_of<bool>(json, "light").value_or(false)) settings.colors = ColorScheme::kLight;
+  if (const auto percent = value_of<double>(json, "text_percent"))
+    settings.text_percent =
+        static_cast<int>(std::clamp(*percent, double{kLeastTextPercent}, double{kMostTextPercent}));
   settings.count_work = value_of<bool>(json, "count_work").value_or(false);
   read_choice(json, "resolution", Resolution::kAuto, settings.resolution);
   read_choice(json, "loop", LoopMode::kPingPong, session.loop);

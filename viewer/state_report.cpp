@@ -168,6 +168,7 @@ std::string state_json(const ViewState& state, const WindowReport& window) {
   json["cost_curves"] = cost_json(state.cost_curves);
   json["resolution"] = resolution_id(state.settings.resolution);
   json["theme"] = state.settings.colors == ColorScheme::kDark ? "dark" : "light";
+  json["text_percent"] = state.settings.text_percent;
   json["turntable"] = state.turntable;
   json["counting"] = state.settings.count_work;
   json["cost_columns"] = state.settings.cost_columns == CostColumns::kTimes ? "times" : "work";
@@ -180,6 +181,7 @@ std::string state_json(const ViewState& state, const WindowReport& window) {
   json["frames_shown"] = window.frames_shown;
   json["window_draws"] = window.window_draws;
   json["first_picture_ms"] = window.first_picture_ms > 0 ? Json(window.first_picture_ms) : Json();
+  json["open_ms"] = window.open_ms > 0 ? Json(window.open_ms) : Json();
   const auto median = state.history.median_ms(state.settings.technique);
   json["median_time_to_image_ms"] = median ? Json(*median) : Json();
   json["last_frame"] = frame_json(state);

@@ -15,7 +15,8 @@ struct WindowReport {
   float width = 0, height = 0;
   WidgetMap widgets;
   double first_picture_ms = 0;  ///< after the program began; 0: none was shown
-  std::string render_command;   ///< makes the picture again, with mdprep
+  double open_ms = 0;  ///< from asking for the file that is open to its first picture; 0: none yet
+  std::string render_command;  ///< makes the picture again, with mdprep
 };
 
 /// One line. Names are stable; times in seconds, stats as in `mdprep bench --json`; what is not

@@ -85,6 +85,11 @@ void draw_window_choices(const Theme& theme, ViewState& state, UiResult& result)
   ImGui::Checkbox("Turntable", &state.turntable);
   record(result.widgets, "turntable");
   if (ImGui::IsItemHovered()) ImGui::SetTooltip("The camera goes slowly round (T)");
+  const float room = ImGui::GetContentRegionAvail().x, gap = ImGui::GetStyle().ItemSpacing.x;
+  ImGui::SameLine(ImGui::GetCursorPosX() + (room + gap) / 2);
+  button_row({{"text-smaller", "Text -", "Smaller text and buttons (-)", Command::kSmallerText},
+              {"text-larger", "Text +", "Larger text and buttons (+)", Command::kLargerText}},
+             result);
 }
 
 }  // namespace

@@ -91,6 +91,7 @@ void draw_limits(const SkeletonView& skeleton, HandPose& hand, UiResult& result)
                              .c_str());
   ImGui::PopStyleColor();
   ImGui::PopTextWrapPos();
+  record(result.widgets, "past-limit");
 }
 
 }  // namespace

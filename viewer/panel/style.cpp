@@ -17,18 +17,22 @@ constexpr std::array kFontFolders = {
 };
 
 // Latin, Greek and Cyrillic, for names in files, and the punctuation of our own sentences.
-constexpr std::array<ImWchar, 7> kGlyphRanges = {0x20, 0x17f, 0x370, 0x52f, 0x2010, 0x2027, 0};
+constexpr std::array<ImWchar, 7> kNameGlyphs = {0x20, 0x17f, 0x370, 0x52f, 0x2010, 0x2027, 0};
+// The large font writes figures and words of ours alone. Every glyph is drawn before the first
+// frame.
+constexpr std::array<ImWchar, 3> kPlainGlyphs = {0x20, 0x7e, 0};
 
 // ImGui 1.86 aborts on a font file that is missing: ask before.
-ImFont* load(const char* file, float pixels) {
+ImFont* load(const char* file, float pixels, const ImWchar* glyphs) {
   ImFontAtlas& atlas = *ImGui::GetIO().Fonts;
+  ImFontConfig config;
+  config.OversampleH = 2;
   for (const char* folder : kFontFolders) {
     const std::filesystem::path path = std::filesystem::path(folder) / file;
     std::error_code ignored;
     if (std::filesystem::is_regular_file(path, ignored))
-      return atlas.AddFontFromFileTTF(path.c_str(), pixels, nullptr, kGlyphRanges.data());
+      return atlas.AddFontFromFileTTF(path.c_str(), pixels, &config, glyphs);
   }
-  ImFontConfig config;
   config.SizePixels = pixels;
   return atlas.AddFontDefault(&config);
 }
@@ -102,13 +106,14 @@ Theme make_theme(float scale, float pixel_ratio) {
   const float pixels = scale * pixel_ratio;  // fonts are made for the framebuffer, then shrunk
   Theme theme;
   theme.scale = scale;
-  theme.fonts.text = load("DejaVuSans.ttf", kTextSize * pixels);
-  theme.fonts.strong = load("DejaVuSans-Bold.ttf", kTextSize * pixels);
-  theme.fonts.large = load("DejaVuSans.ttf", kLargeSize * pixels);
+  theme.pixel_ratio = pixel_ratio;
+  ImGui::GetIO().Fonts->Clear();
+  theme.fonts.text = load("DejaVuSans.ttf", kTextSize * pixels, kNameGlyphs.data());
+  theme.fonts.strong = load("DejaVuSans-Bold.ttf", kTextSize * pixels, kNameGlyphs.data());
+  theme.fonts.large = load("DejaVuSans.ttf", kLargeSize * pixels, kPlainGlyphs.data());
   ImGui::GetIO().FontGlobalScale = 1 / pixel_ratio;
 
-  set_colors(ColorScheme::kDark);
-  ImGuiStyle& style = ImGui::GetStyle();
+  ImGuiStyle& style = ImGui::GetStyle() = ImGuiStyle();
   style.WindowPadding = {14, 12};
   style.FramePadding = {9, 4};
   style.ItemSpacing = {8, 6};
@@ -121,6 +126,7 @@ Theme make_theme(float scale, float pixel_ratio) {
   style.WindowBorderSize = 0;
   style.PopupBorderSize = 1;
   style.ScaleAllSizes(scale);
+  set_colors(ColorScheme::kDark);
   return theme;
 }
 

@@ -18,11 +18,12 @@ struct Fonts {
 /// What every panel function draws with.
 struct Theme {
   Fonts fonts;
-  float scale = 1;  ///< window coordinates per unit of design
+  float scale = 1;        ///< window coordinates per unit of design
+  float pixel_ratio = 1;  ///< framebuffer pixels per window coordinate
 };
 
-/// Loads fonts and sets sizes and dark colours; rounded. `scale` as Window::ui_scale(),
-/// `pixel_ratio` as Window::pixel_ratio(). Call once, before the first frame.
+/// Loads fonts, in place of those there are, and sets sizes and dark colours; rounded. Between
+/// frames; after the first one Window::renew_fonts() is due as well.
 Theme make_theme(float scale, float pixel_ratio);
 
 /// Between frames, at any time.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cerrno>
+#include <chrono>
 #include <cstdlib>
 #include <cstring>
 #include <utility>
@@ -76,6 +77,11 @@ void SceneLoader::cancel() {
   loaded_.reset();
 }
 
+void SceneLoader::wait(double seconds) {
+  std::unique_lock lock(mutex_);
+  done_.wait_for(lock, std::chrono::duration<double>(seconds), [this] { return !busy_; });
+}
+
 std::optional<SceneLoader::Progress> SceneLoader::progress() const {
   const std::lock_guard lock(mutex_);
   return progress_;
@@ -110,6 +116,7 @@ void SceneLoader::run(const std::vector<std::string>& paths, Reason reason) {
     if (!cancelled_) loaded_ = std::move(scene);
     busy_ = false;
   }
+  done_.notify_all();
   on_news_();
 }
 

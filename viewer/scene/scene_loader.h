@@ -3,6 +3,7 @@
 #pragma once
 
 #include <atomic>
+#include <condition_variable>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -41,6 +42,8 @@ class SceneLoader {
   void load(std::vector<std::string> paths);
   void cancel();
   bool busy() const { return busy_; }
+  /// Until nothing is in work, or `seconds` have passed.
+  void wait(double seconds);
 
   struct Progress {
     std::string name;  ///< of the source file, without its folders
@@ -81,6 +84,7 @@ class SceneLoader {
   std::optional<LoadedScene> loaded_;
   bool cancelled_ = false;
   std::atomic<bool> busy_ = false;
+  std::condition_variable done_;  // with the mutex: no longer busy
   std::thread thread_;
 };
 

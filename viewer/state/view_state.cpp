@@ -1,5 +1,6 @@
 #include "viewer/state/view_state.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "common/trace/technique.h"
@@ -17,6 +18,11 @@ void ViewSettings::next_shading() {
   std::size_t row = 0;
   while (row < modes.size() && modes[row].mode != shading) ++row;
   shading = modes[(row + 1) % modes.size()].mode;
+}
+
+void ViewSettings::step_text_size(int by) {
+  constexpr int kStep = 10;
+  text_percent = std::clamp(text_percent + by * kStep, kLeastTextPercent, kMostTextPercent);
 }
 
 void ViewState::note_frame(FrameReport frame) {

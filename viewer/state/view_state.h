@@ -40,6 +40,8 @@ enum class Resolution {
 /// What the table of techniques shows.
 enum class CostColumns { kTimes, kWork };
 
+inline constexpr int kLeastTextPercent = 70, kMostTextPercent = 200;
+
 struct ViewSettings {
   std::size_t technique = 0;  ///< row of technique_table()
   ShadingMode shading = ShadingMode::kDiffuse;
@@ -50,10 +52,13 @@ struct ViewSettings {
   CostColumns cost_columns = CostColumns::kTimes;
   bool keep_tracing = false;  ///< trace again although nothing has changed, to watch the times
   ColorScheme colors = ColorScheme::kDark;
+  int text_percent = 100;  ///< size of text and widgets; 100: as the display asks
 
   /// To another row of the table, around its ends.
   void step_technique(int by);
   void next_shading();
+  /// Larger or smaller by so many steps, within bounds.
+  void step_text_size(int by);
 
   bool operator==(const ViewSettings&) const = default;
 };

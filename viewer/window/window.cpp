@@ -112,6 +112,8 @@ void Window::install_callbacks(GLFWwindow* window) {
   glfwSetWindowRefreshCallback(window, [](GLFWwindow* w) { Events::of(w).active = true; });
   glfwSetWindowFocusCallback(window, [](GLFWwindow* w, int) { Events::of(w).active = true; });
   glfwSetCursorEnterCallback(window, [](GLFWwindow* w, int) { Events::of(w).active = true; });
+  glfwSetWindowContentScaleCallback(
+      window, [](GLFWwindow* w, float, float) { Events::of(w).active = true; });
   glfwSetFramebufferSizeCallback(window,
                                  [](GLFWwindow* w, int, int) { Events::of(w).active = true; });
 }
@@ -202,16 +204,16 @@ std::vector<KeyEvent> Window::take_keys() {
 
 std::vector<std::string> Window::take_drops() { return std::exchange(events_->drops, {}); }
 
-float Window::width() const {
+WindowShape Window::shape() const {
   int width = 0, height = 0;
   glfwGetWindowSize(window_, &width, &height);
-  return static_cast<float>(width);
-}
-
-float Window::height() const {
-  int width = 0, height = 0;
-  glfwGetWindowSize(window_, &width, &height);
-  return static_cast<float>(height);
+  WindowShape shape{static_cast<float>(width), static_cast<float>(height)};
+  const int pixels = framebuffer_width();
+  if (width > 0 && pixels > 0) shape.pixel_ratio = static_cast<float>(pixels) / shape.width;
+  float scale_x = 1, scale_y = 1;
+  glfwGetWindowContentScale(window_, &scale_x, &scale_y);
+  shape.ui_scale = std::clamp(scale_x / shape.pixel_ratio, 0.5f, 4.0f);
+  return shape;
 }
 
 int Window::framebuffer_width() const {
@@ -226,14 +228,9 @@ int Window::framebuffer_height() const {
   return height;
 }
 
-float Window::pixel_ratio() const {
-  return width() > 0 ? static_cast<float>(framebuffer_width()) / width() : 1;
-}
-
-float Window::ui_scale() const {
-  float x = 1, y = 1;
-  glfwGetWindowContentScale(window_, &x, &y);
-  return std::clamp(x / pixel_ratio(), 0.5f, 4.0f);
+void Window::renew_fonts() {
+  ImGui_ImplOpenGL3_DestroyFontsTexture();
+  ImGui_ImplOpenGL3_CreateFontsTexture();
 }
 
 void Window::begin_frame() {

@@ -18,6 +18,15 @@ namespace mdk {
 /// Whether a size counts pixels of an ordinary display and grows on a dense one.
 enum class SizeUnit { kExact, kScaled };
 
+/// How large the window is, and how dense its display.
+struct WindowShape {
+  float width = 0, height = 0;  ///< in window coordinates, those of the mouse and of ImGui
+  float pixel_ratio = 1;        ///< framebuffer pixels per window coordinate
+  float ui_scale = 1;           ///< how much larger than on an ordinary display things should be
+
+  bool operator==(const WindowShape&) const = default;
+};
+
 /// One per process. All of it for the main thread, except wake().
 class Window {
  public:
@@ -46,15 +55,13 @@ class Window {
   /// As if a hand had done it; from then on no other hand moves the pointer.
   void play(const PlayedEvent& event);
 
-  /// Size in window coordinates, those of the mouse and of ImGui.
-  float width() const;
-  float height() const;
-  /// Framebuffer pixels per window coordinate.
-  float pixel_ratio() const;
-  /// How much larger than on an ordinary display things should be, in window coordinates.
-  float ui_scale() const;
+  /// As it is now: the user, or a move to another display, may change any of it.
+  WindowShape shape() const;
   int framebuffer_width() const;
   int framebuffer_height() const;
+
+  /// ImGui's fonts are others than at the last frame.
+  void renew_fonts();
 
   /// Clears the window and begins an ImGui frame.
   void begin_frame();
