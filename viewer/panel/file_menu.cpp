@@ -54,6 +54,7 @@ void draw_file_menu(const Rect& picture, const Theme& theme, ViewState& state, U
     draw_choices(theme, menu, result);
   const float button = 80 * theme.scale;
   ImGui::SetNextItemWidth(-2 * (button + ImGui::GetStyle().ItemSpacing.x));
+  if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
   bool typed = ImGui::InputTextWithHint("##path", "path of a file or folder", &menu.typed,
                                         ImGuiInputTextFlags_EnterReturnsTrue);
   record(result.widgets, "open-path");
@@ -61,7 +62,9 @@ void draw_file_menu(const Rect& picture, const Theme& theme, ViewState& state, U
   typed |= ImGui::Button("Open", {button, 0});
   record(result.widgets, "open-typed");
   ImGui::SameLine();
-  const bool closed = ImGui::Button("Close", {button, 0});
+  // The text field has the keyboard, so that no shortcut sees the key.
+  const bool closed = ImGui::Button("Close", {button, 0}) ||
+                      ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape), false);
   record(result.widgets, "close-file-menu");
   if (typed && !menu.typed.empty()) result.open_paths = {menu.typed};
   ImGui::End();

@@ -57,7 +57,8 @@ void draw_baking(const Rect& picture, const Theme& theme, const SceneLoader::Pro
   ImGui::PopFont();
   ImGui::ProgressBar(static_cast<float>(baking.bake.fraction), {-1, 6 * theme.scale}, "");
   ImGui::AlignTextToFramePadding();
-  ImGui::TextDisabled("%s", baking.bake.text.empty() ? "starting" : baking.bake.text.c_str());
+  const auto words = std::min(baking.bake.text.find_first_not_of(' '), baking.bake.text.size());
+  ImGui::TextDisabled("%s", baking.bake.text.empty() ? "starting" : &baking.bake.text[words]);
   record(result.widgets, "bake-progress");
   const float button = 80 * theme.scale;
   ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - button);

@@ -104,8 +104,8 @@ void draw_costs(const Rect& place, const TimeScale& scale, const Theme& theme,
   const float size = ImGui::GetFontSize() * 0.76f;
   const std::string top = milliseconds_text(costs.longest_ms(shown));
   if (costs.known(shown) > 0)
-    draw.AddText(ImGui::GetFont(), size, {place.x, place.y - 2 * theme.scale}, dim_color(),
-                 top.c_str());
+    draw.AddText(ImGui::GetFont(), size, {place.x + 5 * theme.scale, place.y - 2 * theme.scale},
+                 dim_color(), top.c_str());
 }
 
 // What lies under the pointer.
