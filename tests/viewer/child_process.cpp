@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
 #include <sstream>
 #include <stdexcept>
@@ -15,6 +16,14 @@
 
 namespace mdk::test {
 namespace {
+
+/// What the system tells of a process or thread, from its state on; a name may hold anything.
+std::string stat_after_name(const std::filesystem::path& process) {
+  std::ifstream in(process / "stat");
+  std::string text;
+  std::getline(in, text);
+  return text.substr(std::min(text.rfind(')') + 1, text.size()));
+}
 
 void redirect(const std::string& file, int to) {
   const char* path = file.empty() ? "/dev/null" : file.c_str();
@@ -72,15 +81,21 @@ std::optional<int> ChildProcess::wait(double seconds) {
 }
 
 double ChildProcess::cpu_seconds() const {
-  std::ifstream in(std::string("/proc/") + std::to_string(pid_) + "/stat");
-  std::string text;
-  std::getline(in, text);
-  std::istringstream fields(text.substr(std::min(text.rfind(')') + 1, text.size())));
+  std::istringstream fields(stat_after_name("/proc/" + std::to_string(pid_)));
   std::string skipped;
   for (int field = 3; field < 14; ++field) fields >> skipped;  // state is the third
   double user = 0, system = 0;
   fields >> user >> system;
   return (user + system) / static_cast<double>(sysconf(_SC_CLK_TCK));
+}
+
+bool ChildProcess::asleep() const {
+  std::error_code gone;
+  const std::string threads = "/proc/" + std::to_string(pid_) + "/task";
+  for (std::filesystem::directory_iterator at(threads, gone), end; !gone && at != end;
+       at.increment(gone))
+    if (stat_after_name(at->path()).starts_with(" R")) return false;
+  return true;
 }
 
 bool has_program(const std::string& name) {

@@ -28,6 +28,8 @@ class ChildProcess {
   bool running();
   /// Processor time it has taken so far, in seconds, all of its threads.
   double cpu_seconds() const;
+  /// Whether all of its threads wait for something.
+  bool asleep() const;
   /// Its exit status, or 128 + the signal that ended it; empty where it still runs after `seconds`.
   std::optional<int> wait(double seconds);
 

@@ -40,6 +40,8 @@ TEST_F(MdviewGui, AScriptedRunSavesTheWholeWindowAndPrintsItsState) {
   EXPECT_EQ(state["camera"], json::parse("[1,2,9,0,0,0,0,1,0,40]"));
   EXPECT_TRUE(state["error"].is_null());
   EXPECT_GE(state["frames_shown"], 3);
+  EXPECT_GT(state["first_picture_ms"], 0);
+  EXPECT_GT(state["open_ms"], 0);
   const json& frame = state["last_frame"];
   EXPECT_EQ(frame["technique"], "refit-bvh");
   EXPECT_EQ(frame["rays"].get<int>(), frame["width"].get<int>() * frame["height"].get<int>());
@@ -180,6 +182,37 @@ TEST_F(MdviewGui, TheMouseOrbitsPansAndZoomsOverThePictureOnly) {
   EXPECT_NEAR(moved[3], 0, 1e-6);
   EXPECT_GT(moved[4], 0.3);
   EXPECT_NEAR(length(point_of(moved, 0) - point_of(moved, 3)), 9 * 0.9, 1e-3);
+}
+
+TEST_F(MdviewGui, FitsTheModelInTheSameDirectionAndGoesBackToTheFirstView) {
+  const json first = start_on_bar()->quit().state["camera"];
+  const auto session = start_on_bar({"--camera", "0 30 40 0 0 0 0 1 0 40"});
+  session->key("f");
+  const auto fitted = session->quit().state;
+  const Vec3d sight = point_of(fitted["camera"], 3) - point_of(fitted["camera"], 0);
+  EXPECT_LT(length(sight), 15);
+  EXPECT_NEAR(sight.y / sight.z, 0.75, 1e-3);
+  EXPECT_NE(fitted["camera"], first);
+  const auto back = start_on_bar({"--camera", "0 30 40 0 0 0 0 1 0 40"});
+  back->drag(in_widget("picture"), {90, 20});
+  back->key("r");
+  EXPECT_EQ(back->quit().state["camera"], first);
+}
+
+TEST_F(MdviewGui, WhileDraggingAPictureThatWouldBeLateIsCoarserAndThenSharpens) {
+  const auto session = start_on_bar({"--samples", "64", "--threads", "1"});
+  const Point from = in_widget("picture");
+  session->xdotool({"mousemove", std::to_string(from.x), std::to_string(from.y)});
+  session->xdotool({"sleep", "3", "mousedown", "1", "sleep", "0.3"});
+  session->xdotool({"mousemove", std::to_string(from.x + 40), std::to_string(from.y)});
+  session->xdotool({"sleep", "1.5"});
+  session->key("p");
+  session->xdotool({"mouseup", "1", "sleep", "3"});
+  session->key("p");
+  const auto state = session->quit().state;
+  const int full = state["widgets"]["picture"][2];
+  EXPECT_LE(read_png(folder_.file("bar-0001.png")).width, full / 2);
+  EXPECT_EQ(read_png(folder_.file("bar-0002.png")).width, full);
 }
 
 TEST_F(MdviewGui, SavesThePictureInFull) {

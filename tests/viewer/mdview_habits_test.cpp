@@ -86,7 +86,7 @@ TEST_F(MdviewGui, ARecentFileIsOpenedFromTheMenuAndAPathCanBeTyped) {
   const auto look = start(words);
   look->wait_for_window();
   look->key("l");
-  const auto menu = look->quit().state;
+  const auto menu = look->close().state;
   widgets_ = menu["widgets"];
   EXPECT_EQ(menu["file_menu"], json::array({"bar.mdk"}));
   const auto session = start(words);
@@ -101,11 +101,19 @@ TEST_F(MdviewGui, ARecentFileIsOpenedFromTheMenuAndAPathCanBeTyped) {
   const auto typing = start(words);
   typing->wait_for_window();
   typing->key("l");
-  typing->click(in_widget("open-path"));
   typing->xdotool({"type", "--delay", "60", "bar.mdk"});
   typing->xdotool({"key", "Return"});
   typing->xdotool({"sleep", "0.5"});
   EXPECT_EQ(typing->quit().state["file"], "bar.mdk");
+
+  const auto closing = start(words);
+  closing->wait_for_window();
+  closing->key("l");
+  closing->key("t");  // is typed
+  closing->key("Escape");
+  state = closing->quit().state;
+  EXPECT_TRUE(state["file_menu"].is_null());
+  EXPECT_EQ(state["turntable"], false);
 }
 
 TEST_F(MdviewGui, ADroppedFolderIsOfferedOrOpenedOrRefused) {
@@ -119,7 +127,7 @@ TEST_F(MdviewGui, ADroppedFolderIsOfferedOrOpenedOrRefused) {
     session->wait_for_window();
     drop_file(server_->display(), "mdview", folder_.file(name));
     session->xdotool({"sleep", "1"});
-    return session->quit().state;
+    return session->close().state;
   };
   EXPECT_EQ(drop("one")["file"], folder_.file("one/bar.mdk"));
   EXPECT_EQ(drop("two")["file_menu"], json::array({"a.mdk", "b.mdk"}));

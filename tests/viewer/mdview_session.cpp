@@ -8,15 +8,14 @@
 #include <sstream>
 #include <thread>
 
+#include "tests/viewer/x_drop.h"
+
 namespace mdk::test {
 namespace {
 
 constexpr double kPatience = 60;  // seconds; a busy machine may be slow
 
 void pause_ms(int ms) { std::this_thread::sleep_for(std::chrono::milliseconds(ms)); }
-
-// Long enough for a slow machine to draw and see what happened before the next event.
-void let_it_draw() { pause_ms(200); }
 
 std::string read_text(const std::string& path) {
   std::ifstream in(path);
@@ -61,7 +60,22 @@ MdviewSession::MdviewSession(const XServer& server, const std::string& folder,
 
 void MdviewSession::wait_for_window() {
   xdotool({"search", "--sync", "--onlyvisible", "--name", "mdview"});
-  pause_ms(1000);
+  pause_ms(800);
+  let_it_draw();
+}
+
+// What happened is seen and drawn before the next event, however busy the machine. While it plays
+// it never rests.
+void MdviewSession::let_it_draw() {
+  constexpr int kLeastMs = 160, kLookMs = 20, kMostLooks = 40;
+  pause_ms(kLeastMs);
+  double before = -1;
+  for (int i = 0; i < kMostLooks; ++i) {
+    const double now = process_->cpu_seconds();
+    if (now == before && process_->asleep()) return;
+    before = now;
+    pause_ms(kLookMs);
+  }
 }
 
 void MdviewSession::key(const std::string& name) {
@@ -105,6 +119,11 @@ void MdviewSession::xdotool(std::vector<std::string> words) {
 }
 
 MdviewResult MdviewSession::finish() { return collect(*process_, folder_); }
+
+MdviewResult MdviewSession::close() {
+  close_window(display_, "mdview");
+  return finish();
+}
 
 MdviewResult MdviewSession::quit() {
   xdotool({"key", "q"});

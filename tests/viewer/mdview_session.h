@@ -42,10 +42,14 @@ class MdviewSession {
   double cpu_seconds() const { return process_->cpu_seconds(); }
   /// Waits for the end. A run that does not end is a failure of the test.
   MdviewResult finish();
+  /// As quit(), by the window's title bar, where a text field has the keyboard.
+  MdviewResult close();
   /// Presses q and waits for the end.
   MdviewResult quit();
 
  private:
+  void let_it_draw();
+
   std::string display_, folder_;
   std::unique_ptr<ChildProcess> process_;
 };

@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 
 #include <cstdlib>
+#include <utility>
 
 #include "tests/viewer/mdview_gui.h"
 
@@ -61,8 +62,9 @@ TEST_F(MdviewGui, AnExactTimeCanBeTyped) {
   EXPECT_EQ(state["technique"], "fuzzy-bvh") << "digits that are typed choose no technique";
 }
 
-TEST_F(MdviewGui, LoopModeAndSpeedAreChosen) {
-  for (const auto& [box, line] : {std::pair{"loop", "loop:2"}, {"speed", "speed:4 x"}}) {
+TEST_F(MdviewGui, ClipLoopModeAndSpeedAreChosen) {
+  for (const auto& [box, line] :
+       {std::pair{"loop", "loop:2"}, {"speed", "speed:4 x"}, {"clip", "clip:nod"}}) {
     const auto look = start_on_bar();
     look->click(in_widget(box));
     widgets_ = look->quit().state["widgets"];  // with the list that has opened
@@ -71,10 +73,9 @@ TEST_F(MdviewGui, LoopModeAndSpeedAreChosen) {
     session->click(in_widget(box));
     session->click(at);
     const auto state = session->quit().state;
-    if (std::string(box) == "loop")
-      EXPECT_EQ(state["loop"], "ping-pong");
-    else
-      EXPECT_EQ(state["speed"], 4.0);
+    EXPECT_EQ(state["loop"], std::string(box) == "loop" ? "ping-pong" : "loop");
+    EXPECT_EQ(state["speed"], std::string(box) == "speed" ? 4.0 : 1.0);
+    EXPECT_EQ(state["clip"], std::string(box) == "clip" ? "nod" : "wave");
   }
 }
 
@@ -103,6 +104,24 @@ TEST_F(MdviewGui, NothingIsMeasuredWhileTheUserActs) {
   session->xdotool({"sleep", "2"});
   session->drag(in_widget("picture"), {90, 20});
   EXPECT_EQ(session->quit().state["cost_curves"], json::object());
+}
+
+TEST_F(MdviewGui, KeysStandAsTicksAtTheirTimes) {
+  const auto state =
+      start({"bar.mdk", "--size", "1280x800", "--quit-after", "1", "--screenshot", "window.png"})
+          ->finish()
+          .state;
+  const Image window = read_png(folder_.file("window.png"));
+  const json& lane = state["widgets"]["range-lane"];  // as wide as the clip is long
+  const double y = lane[1].get<double>() + 2.1 * lane[3].get<double>();
+  const auto colors_near = [&](double key) {
+    const double x = lane[0].get<double>() + key / 10 * lane[2].get<double>();
+    return count_colors(cut_out(window, json{x - 2, y, 5, 1}));
+  };
+  for (int key = 1; key < 10; ++key) {
+    EXPECT_GT(colors_near(key), 1u) << "key " << key;
+    EXPECT_EQ(colors_near(key + 0.5), 1u) << "between keys " << key << " and " << key + 1;
+  }
 }
 
 TEST_F(MdviewGui, SegmentsOfTheFileAreMarked) {

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <fstream>
 #include <optional>
+#include <utility>
 
 #include "tests/formats/temp_folder.h"
 
@@ -43,6 +44,7 @@ SavedSession some_session() {
   session.settings.shading = ShadingMode::kNormals;
   session.settings.resolution = Resolution::kHalf;
   session.settings.colors = ColorScheme::kLight;
+  session.settings.text_percent = 130;
   session.loop = LoopMode::kPingPong;
   session.speed = 0.25;
   session.panel = PanelMode::kHidden;
@@ -69,6 +71,21 @@ TEST(SavedSession, DamagedFilesGiveDefaults) {
     EXPECT_EQ(read_session(path), SavedSession{}) << text;
   }
   EXPECT_EQ(read_session(folder.path()), SavedSession{}) << "a folder";
+}
+
+TEST(SavedSession, TextIsNeverTooSmallOrTooLargeToBeSetBack) {
+  TempFolder folder;
+  const std::string path = folder.file("session.json");
+  for (const auto& [said, read] :
+       {std::pair{"-1e300", 70}, {"3", 70}, {"110", 110}, {"9999", 200}}) {
+    std::ofstream(path) << R"({"text_percent": )" << said << "}";
+    EXPECT_EQ(read_session(path).settings.text_percent, read) << said;
+  }
+  ViewSettings settings;
+  settings.step_text_size(-100);
+  EXPECT_EQ(settings.text_percent, kLeastTextPercent);
+  settings.step_text_size(1);
+  EXPECT_EQ(settings.text_percent, kLeastTextPercent + 10);
 }
 
 TEST(SavedSession, AnyCutOfAGoodFileIsReadWithoutFailing) {

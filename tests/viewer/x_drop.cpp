@@ -13,6 +13,24 @@ namespace {
 
 constexpr long kXdndVersion = 5;
 
+/// The first window below the root whose name contains `name`.
+Window find_window(Display* display, const std::string& name) {
+  const Window root = DefaultRootWindow(display);
+  Window ignored = 0, parent = 0, *children = nullptr;
+  unsigned count = 0;
+  Window found = 0;
+  if (!XQueryTree(display, root, &ignored, &parent, &children, &count)) return 0;
+  for (unsigned i = 0; i < count && !found; ++i) {
+    char* title = nullptr;
+    if (XFetchName(display, children[i], &title) && std::strstr(title, name.c_str()))
+      found = children[i];
+    if (title) XFree(title);
+  }
+  if (children) XFree(children);
+  if (!found) throw std::runtime_error("no window " + name);
+  return found;
+}
+
 class DropSource {
  public:
   explicit DropSource(const std::string& display) : display_(XOpenDisplay(display.c_str())) {
@@ -25,8 +43,7 @@ class DropSource {
   DropSource& operator=(const DropSource&) = delete;
 
   void drop(const std::string& window_name, const std::string& path) {
-    const Window to = find(DefaultRootWindow(display_), window_name);
-    if (!to) throw std::runtime_error("no window " + window_name);
+    const Window to = find_window(display_, window_name);
     XWindowAttributes at{};
     XGetWindowAttributes(display_, to, &at);
     const long middle = ((at.x + at.width / 2L) << 16) | (at.y + at.height / 2L);
@@ -40,21 +57,6 @@ class DropSource {
 
  private:
   Atom atom(const char* name) { return XInternAtom(display_, name, False); }
-
-  Window find(Window root, const std::string& name) {
-    Window ignored = 0, parent = 0, *children = nullptr;
-    unsigned count = 0;
-    Window found = 0;
-    if (!XQueryTree(display_, root, &ignored, &parent, &children, &count)) return 0;
-    for (unsigned i = 0; i < count && !found; ++i) {
-      char* title = nullptr;
-      if (XFetchName(display_, children[i], &title) && std::strstr(title, name.c_str()))
-        found = children[i];
-      if (title) XFree(title);
-    }
-    if (children) XFree(children);
-    return found;
-  }
 
   void send(Window to, const char* message, long a, long b, long c, long d = 0) {
     XEvent event{};
@@ -110,6 +112,19 @@ class DropSource {
 void drop_file(const std::string& display, const std::string& window_name,
                const std::string& path) {
   DropSource(display).drop(window_name, path);
+}
+
+void close_window(const std::string& display, const std::string& window_name) {
+  Display* const x = XOpenDisplay(display.c_str());
+  if (!x) throw std::runtime_error("no display " + display);
+  XEvent event{};
+  event.xclient.type = ClientMessage;
+  event.xclient.window = find_window(x, window_name);
+  event.xclient.message_type = XInternAtom(x, "WM_PROTOCOLS", False);
+  event.xclient.format = 32;
+  event.xclient.data.l[0] = static_cast<long>(XInternAtom(x, "WM_DELETE_WINDOW", False));
+  XSendEvent(x, event.xclient.window, False, NoEventMask, &event);
+  XCloseDisplay(x);
 }
 
 void set_display_density(const std::string& display, int dots_per_inch) {
