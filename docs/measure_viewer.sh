@@ -2,56 +2,52 @@
 # Measures the habits of mdview that docs/user-guide.md gives figures for: how soon the first picture
 # stands, what rest costs, what a jump in time costs beside playing, and whether the panel keeps its
 # rate while a picture is slow. On a virtual display, with OpenGL in software: let nothing else run.
-# usage: docs/measure_viewer.sh FILE.mdk…   Needs a build, Xvfb, xauth, xdotool and python3.
+# usage: docs/measure_viewer.sh FILE.mdk…   For what it needs see viewer_hands.sh.
 set -euo pipefail
-here=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 (($# > 0)) || { sed -n '2,5s/^# //p' "$0" >&2; exit 2; }
-if [[ -z "${MDK_MEASURE_DISPLAY:-}" ]]; then
-  MDK_MEASURE_DISPLAY=1 exec xvfb-run -a -s "-screen 0 1280x800x24" "$0" "$@"
-fi
-mdview=${MDK_BIN:-$here/build/release/bin}/mdview
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
+# shellcheck source=docs/viewer_hands.sh
+source "$(dirname "${BASH_SOURCE[0]}")/viewer_hands.sh"
 
-state() {  # of the last run: state NAME
-  python3 -c 'import functools, json, sys
-print(functools.reduce(lambda at, name: at[name], sys.argv[2].split("."), json.load(open(sys.argv[1]))))' "$work/state.json" "$1"
-}
-begin() {
-  "$mdview" "$@" --size 1280x800 --print-state > "$work/state.json" &
-  viewer=$!
-  xdotool search --sync --onlyvisible --name mdview > /dev/null
-  sleep 1
-}
-end() { xdotool key q; wait "$viewer"; }
+median() { printf '%s\n' "$@" | sort -g | sed -n "$((($# + 1) / 2))p"; }
 cpu_ticks() { awk '{print $14 + $15}' "/proc/$viewer/stat"; }
+size=(--size 1280x800)
 
 for file in "$@"; do
-  echo "$(basename "$file")"
-  times=()
-  for _ in 1 2 3 4 5; do
-    "$mdview" "$file" --size 1280x800 --quit-after 1 --print-state > "$work/state.json"
-    times+=("$(state first_picture_ms)")
+  basename "$file"
+  first=() opened=()
+  for _ in {1..9}; do
+    "$bin/mdview" "$file" "${size[@]}" --quit-after 1 --print-state > "$work/state.json"
+    first+=("$(state first_picture_ms)")
   done
-  printf '  first picture, median of 5: %.0f ms after the program began\n' \
-    "$(printf '%s\n' "${times[@]}" | sort -g | sed -n 3p)"
+  for _ in {1..5}; do
+    begin "${size[@]}"
+    xdotool key l sleep 0.3
+    xdotool type --delay 20 "$(realpath "$file")"
+    xdotool key Return sleep 1
+    end
+    opened+=("$(state open_ms)")
+  done
+  printf '  first picture: %.0f ms after the program began (median of 9, least %.0f)\n' \
+    "$(median "${first[@]}")" "$(printf '%s\n' "${first[@]}" | sort -g | head -n 1)"
+  printf '  opened in a running viewer: %.0f ms to its picture (median of 5)\n' "$(median "${opened[@]}")"
 
-  begin "$file" --play
+  begin "$file" "${size[@]}" --play
   sleep 3
   end
   playing=$(state median_time_to_image_ms)
-  read -r x y width height < <(state widgets.time-line | tr -d '[],')
-  begin "$file"
+  widgets_of "$file" "${size[@]}"
+  begin "$file" "${size[@]}"
   RANDOM=7
-  for _ in $(seq 40); do
-    xdotool mousemove "$(python3 -c "print(int($x + 20 + ($width - 40) * $RANDOM / 32768))")" \
-      "$(python3 -c "print(int($y + $height / 2))")" click 1 sleep 0.12
+  for _ in {1..40}; do
+    # shellcheck disable=SC2046  # two words
+    xdotool mousemove $(at time-line "$(python3 -c "print(0.02 + 0.96 * $RANDOM / 32768)")" 0.5) \
+      click 1 sleep 0.12
   done
   end
   printf '  time to image: %.1f ms playing, %.1f ms at random jumps (medians of 15)\n' \
     "$playing" "$(state median_time_to_image_ms)"
 
-  begin "$file"
+  begin "$file" "${size[@]}"
   sleep 12  # until the cost curve is whole
   before=$(cpu_ticks)
   sleep 5
@@ -59,7 +55,7 @@ for file in "$@"; do
   end
   printf '  at rest: %s CPU ticks of %s in 5 s\n' $((after - before)) $((5 * $(getconf CLK_TCK)))
 
-  begin "$file" --technique brute-force --play
+  begin "$file" "${size[@]}" --technique brute-force --play
   sleep 4
   end
   printf '  brute force, playing: the window was drawn %s times in about 5 s while %s pictures came\n' \
