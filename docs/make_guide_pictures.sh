@@ -32,5 +32,22 @@ picture view -- "$aside"
 picture time-line -- "xdotool sleep 4 key 2 sleep 5 key 4 sleep 5 key 1 sleep 3" \
   "drag range-lane 0.3 0.7" "$aside"
 picture light --theme light --tab file --shading lit --samples 4 -- "$aside"
+
+"$bin/mdprep" bake assets/hand.glb -q -o "$work/posed.mdk" --decompose bones --sampling pose-space
+view=("$work/posed.mdk" "${view[@]:1}" --shading clusters)
+widgets_of "${view[@]}"
+begin "${view[@]}"
+click pose-by-hand 0.1 0.5
+end
+cp "$work/state.json" "$work/widgets.json"  # where joints and sliders are
+begin "${view[@]}" --screenshot docs/images/viewer-pose.png
+click pose-by-hand 0.1 0.5
+for joint in index_1 middle_1; do
+  click "joint:$joint"
+  drag turn:x 0.5 0.7
+done
+eval "$aside"
+end
+
 view=(--size 1280x800)
 picture start -- "$aside"

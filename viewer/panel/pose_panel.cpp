@@ -45,7 +45,7 @@ void draw_turn(const SkeletonView& skeleton, HandPose& hand, UiResult& result) {
   const Vec3d turn = hand.pose.turns[hand.joint] * (1 / kDegree);
   std::array<float, 3> degrees = {static_cast<float>(turn.x), static_cast<float>(turn.y),
                                   static_cast<float>(turn.z)};
-  ImGui::TextDisabled("turn about its own axes, at most %.0f°", limit);
+  ImGui::TextDisabled("about its own axes, at most %.0f°", limit);
   bool changed = false;
   constexpr std::array<const char*, 3> kAxes = {"x", "y", "z"};
   for (std::size_t axis = 0; axis < 3; ++axis) {
