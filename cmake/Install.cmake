@@ -9,6 +9,11 @@ if(MDK_BUILD_VIEWER)
   set(MDK_VIEWER_PAGES ${PROJECT_SOURCE_DIR}/docs/man/mdview.1)
 endif()
 
+if(TARGET mdk_assimp)
+  # Not a program that people start: mdprep looks for it here, beside the folder it is in itself.
+  install(TARGETS mdk_assimp RUNTIME DESTINATION libexec/mdk COMPONENT tools)
+endif()
+
 # mdk_install_compressed(COMPONENT FOLDER PATTERN...): files as FOLDER/NAME.gz. gzip -n leaves name and
 # time out: the same page gives the same bytes.
 find_program(GZIP_PROGRAM gzip REQUIRED)

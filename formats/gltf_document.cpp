@@ -338,10 +338,14 @@ void Notes::add(const std::string& sentence) {
 }
 
 Document load_document(const std::string& path, Notes& notes) {
+  Document document = parse_document(path, read_whole_file(path), notes);
+  document.dependencies.insert(document.dependencies.begin(), path);
+  return document;
+}
+
+Document parse_document(const std::string& path, Bytes bytes, Notes& notes) {
   Document document;
   document.path = path;
-  Bytes bytes = read_whole_file(path);
-  document.dependencies.push_back(path);
   const SchemaSummary schema = check_schema(path, json_text(path, bytes));
   if (!schema.plain_json.empty()) bytes = with_json(bytes, schema.plain_json);
   for (const std::string& extension : schema.ignored_extensions)

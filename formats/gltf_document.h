@@ -145,4 +145,8 @@ struct Document {
 /// read_gltf does.
 Document load_document(const std::string& path, Notes& notes);
 
+/// The same for the bytes of a .gltf or .glb that stand, or would stand, at `path`, which is not
+/// among the dependencies.
+Document parse_document(const std::string& path, Bytes bytes, Notes& notes);
+
 }  // namespace mdk::gltf

@@ -132,8 +132,8 @@ void lay_out_keys(const Document& document, const std::vector<AnimationClip>& cl
   if (sequence.key_times.size() > most_bytes / bytes_per_key)
     throw Error(ErrorCode::kOverLimit,
                 document.path + ": " + std::to_string(sequence.key_times.size()) + " keys of " +
-                    std::to_string(sequence.vertex_count) +
-                    " vertices take over " + mebibytes(most_bytes) + "; choose a lower --fps or fewer --clips");
+                    std::to_string(sequence.vertex_count) + " vertices take over " +
+                    mebibytes(most_bytes) + "; choose a lower --fps or fewer --clips");
 }
 
 void sample_keys(const Document& document, const RigPlan& plan,
@@ -188,12 +188,18 @@ void check_finite(const Document& document, const PoseSequence& sequence) {
                                            std::to_string(sequence.key_times[key]) + " s");
 }
 
-ReadResult read(const std::string& path, const ReadOptions& options, ProgressSink& progress) {
+Error no_memory(const std::string& path) {
+  return {ErrorCode::kOverLimit,
+          path + ": does not fit into memory; choose a lower --fps or fewer --clips"};
+}
+
+void check_rate(const ReadOptions& options) {
   if (!(options.fps > 0 && options.fps <= 10000))
     throw Error(ErrorCode::kUsage, "--fps must be above 0 and at most 10000");
-  progress.report("read", 0.0);
-  Notes notes;
-  Document document = load_document(path, notes);
+}
+
+ReadResult unfold(Document document, Notes& notes, const ReadOptions& options,
+                  ProgressSink& progress) {
   const std::vector<AnimationClip> clips = read_clips(document, options);
   const Scene scene = read_scene(document, options, notes);
 
@@ -223,11 +229,24 @@ ReadResult read(const std::string& path, const ReadOptions& options, ProgressSin
 }  // namespace
 
 ReadResult read_gltf(const std::string& path, const ReadOptions& options, ProgressSink& progress) {
+  check_rate(options);
+  progress.report("read", 0.0);
   try {
-    return read(path, options, progress);
+    Notes notes;
+    return unfold(load_document(path, notes), notes, options, progress);
   } catch (const std::bad_alloc&) {
-    throw Error(ErrorCode::kOverLimit,
-                path + ": does not fit into memory; choose a lower --fps or fewer --clips");
+    throw no_memory(path);
+  }
+}
+
+ReadResult read_glb(const std::string& path, Bytes bytes, const ReadOptions& options,
+                    ProgressSink& progress) {
+  check_rate(options);
+  try {
+    Notes notes;
+    return unfold(parse_document(path, std::move(bytes), notes), notes, options, progress);
+  } catch (const std::bad_alloc&) {
+    throw no_memory(path);
   }
 }
 

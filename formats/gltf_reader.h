@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "common/base/progress.h"
 #include "formats/reading.h"
@@ -14,5 +15,10 @@ namespace mdk {
 /// in the file. Throws Error: kIo (cannot read), kBadInput (broken, or needs a feature that is
 /// named), kUsage (no clip of such a name; lists those there are), kOverLimit.
 ReadResult read_gltf(const std::string& path, const ReadOptions& options, ProgressSink& progress);
+
+/// The same for a binary glTF in memory, which was made from the file `path`: it is named in
+/// messages, is no dependency, and images are looked for beside it.
+ReadResult read_glb(const std::string& path, std::vector<unsigned char> bytes,
+                    const ReadOptions& options, ProgressSink& progress);
 
 }  // namespace mdk

@@ -34,7 +34,7 @@ struct FileHeader {
   std::uint64_t file_bytes = 0;
   std::uint32_t section_count = 0;
   std::uint16_t tool_version[3] = {};  ///< major, minor, patch
-  std::uint16_t reserved = 0;
+  std::uint16_t source_reader = 0;      ///< a SourceReader
   std::uint32_t reserved_too = 0;
   std::uint64_t options_hash = 0;
   std::uint64_t reserved_last = 0;

@@ -104,7 +104,9 @@ std::uint64_t MdkFile::file_bytes() const { return state_->file.bytes().size(); 
 
 MdkOrigin MdkFile::origin() const {
   const layout::FileHeader& header = state_->sections.header();
-  return {std::to_array(header.tool_version), header.options_hash};
+  const bool is_foreign = header.source_reader == static_cast<std::uint16_t>(SourceReader::kAssimp);
+  return {std::to_array(header.tool_version), header.options_hash,
+          is_foreign ? SourceReader::kAssimp : SourceReader::kMdprep};
 }
 
 std::vector<MdkSectionInfo> MdkFile::sections() const {

@@ -110,6 +110,7 @@ std::uint64_t write_mdk(const Model& model, const std::string& path,
   header.section_count = static_cast<std::uint32_t>(sections.size());
   std::ranges::copy(options.origin.version, header.tool_version);
   header.options_hash = options.origin.options_hash;
+  header.source_reader = static_cast<std::uint16_t>(options.origin.reader);
   std::vector<SectionEntry> table;
   for (const Section& section : sections) table.push_back(section.entry);
   header.checksum = table_checksum(header, table);

@@ -181,13 +181,14 @@ void run_bake(const BakeArguments& arguments, CommandContext& context) {
                               smallest_scratch_block(limits.memory()));
   const DeferredInterrupts interrupts;
 
-  BakeOutcome outcome{joined_inputs(arguments), arguments.output, {}, 0, 0, 0};
+  BakeOutcome outcome{joined_inputs(arguments), arguments.output, {}, {}, 0, 0, 0};
   Stopwatch total, stage;
   ProgressPart reading(progress, 0, kReadUntil);
   SourceOptions reading_options = arguments.source;
   reading_options.skeleton = options.sampling == PoseSampling::kPoseSpace;
   ReadResult source = read_source(source_files, reading_options, reading);
   keep_inputs(arguments, source.dependencies);
+  outcome.read_through = source.read_through;
   outcome.seconds.read = stage.lap();
   require_memory(arguments, source.sequence, limits.memory());
 
@@ -199,7 +200,9 @@ void run_bake(const BakeArguments& arguments, CommandContext& context) {
   progress.report("write", kDecomposeUntil);
   stage.lap();
   const Model model = result.model.view();
-  const MdkOrigin origin{tool_version(), context.options_hash};
+  const MdkOrigin origin{
+      tool_version(), context.options_hash,
+      source.read_through.empty() ? SourceReader::kMdprep : SourceReader::kAssimp};
   outcome.file_bytes = write_mdk(model, arguments.output, {origin, context.overwrite});
   outcome.seconds.write = stage.lap();
   outcome.seconds.total = total.seconds();
@@ -279,8 +282,9 @@ CommandBody add_bake_command(CLI::App& command) {
       .add_option(
           "INPUT", arguments->inputs,
           "An animated mesh: .gltf or .glb (skins, morph targets, node animation); an .obj\n"
-          "or .ply for each key (a folder, 'walk_####.obj', or all the files); or an .obj\n"
-          "or .ply and the point cache that moves it (.pc2 or .mdd).")
+          "or .ply for each key (a folder, 'walk_####.obj', or all the files); an .obj or\n"
+          ".ply and the point cache that moves it (.pc2 or .mdd); or, through Assimp, .fbx,\n"
+          ".dae, .md5mesh, .x and others.")
       ->required()
       ->type_name("");
   command

@@ -28,6 +28,8 @@ std::string bake_report_json(const Model& model, const DecomposeStats& stats,
   Json quantization = nullptr;
   if (stats.quantization)
     quantization = {{"bound", stats.quantization->bound}, {"largest", stats.quantization->largest}};
+  const Json read_through =
+      outcome.read_through.empty() ? Json(nullptr) : Json(outcome.read_through);
   Json growth = Json::array();
   for (const ClusteringStep& step : stats.steps)
     growth.push_back({{"clusters", step.clusters},
@@ -37,6 +39,7 @@ std::string bake_report_json(const Model& model, const DecomposeStats& stats,
   const Json report = {
       {"schema", "mdprep-bake/1"},
       {"input", outcome.input},
+      {"read_through", read_through},
       {"triangles", model.triangle_count()},
       {"vertices", model.vertex_count},
       {"keys", model.key_count()},

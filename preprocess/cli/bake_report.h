@@ -15,6 +15,7 @@ struct BakeSeconds {
 
 struct BakeOutcome {
   std::string input, output;  ///< as given on the command line
+  std::string read_through;   ///< what read the input in mdprep's place; empty: nothing
   BakeSeconds seconds;
   std::uint64_t peak_memory_bytes = 0;  ///< resident, with pages of mapped files
   std::uint64_t file_bytes = 0;

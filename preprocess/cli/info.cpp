@@ -17,6 +17,8 @@
 namespace mdk {
 namespace {
 
+bool is_foreign(const MdkOrigin& origin) { return origin.reader == SourceReader::kAssimp; }
+
 using Json = nlohmann::ordered_json;
 
 struct InfoArguments {
@@ -99,6 +101,7 @@ void print_json(const MdkFile& file, const InfoArguments& arguments) {
       {"file_bytes", file.file_bytes()},
       {"made_by", version_text(file.origin().version)},
       {"options_hash", hash_text(file.origin().options_hash)},
+      {"read_through", is_foreign(file.origin()) ? Json("Assimp") : Json(nullptr)},
       {"triangles", model.triangle_count()},
       {"vertices", model.vertex_count},
       {"keys", model.key_count()},
@@ -146,7 +149,8 @@ std::string textures_text(const Model& model) {
 
 std::string origin_text(const MdkOrigin& origin) {
   if (origin == MdkOrigin{}) return "not known";
-  return "mdprep " + version_text(origin.version) + ", options " + hash_text(origin.options_hash);
+  return "mdprep " + version_text(origin.version) + ", options " + hash_text(origin.options_hash) +
+         (is_foreign(origin) ? ", source read through Assimp" : "");
 }
 
 /// How many, and the keys of the first few.

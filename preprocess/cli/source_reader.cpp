@@ -8,6 +8,7 @@
 #include <system_error>
 
 #include "common/base/error.h"
+#include "formats/assimp_reader.h"
 #include "formats/gltf_reader.h"
 #include "formats/mesh_sequence_reader.h"
 #include "preprocess/cli/number_text.h"
@@ -60,6 +61,10 @@ bool is_gltf(const std::string& path) {
   const std::string extension = extension_of(path);
   return extension == ".gltf" || extension == ".glb";
 }
+bool is_for_assimp(const std::string& path) {
+  const auto extensions = assimp_extensions();
+  return std::ranges::find(extensions, extension_of(path)) != extensions.end();
+}
 bool is_cache(const std::string& path) {
   const std::string extension = extension_of(path);
   return extension == ".pc2" || extension == ".mdd";
@@ -83,6 +88,7 @@ Source find_one(const std::string& path) {
   if (std::filesystem::is_directory(path, ignored))
     return {SourceKind::kMeshes, numbered_files_in(path, kMeshExtensions), {}};
   if (is_gltf(path)) return {SourceKind::kGltf, {"", {path}, {0}}, {}};
+  if (is_for_assimp(path)) return {SourceKind::kThroughAssimp, {"", {path}, {0}}, {}};
   if (!is_mesh(path)) refuse(path);
   if (is_number_pattern(path)) return {SourceKind::kMeshes, files_of_pattern(path), {}};
   Source source{SourceKind::kMeshes, files_from(path), {}};
@@ -98,9 +104,12 @@ Source find_source(std::span<const std::string> inputs) {
   if (inputs.size() == 1) return find_one(inputs.front());
   if (inputs.size() == 2 && is_mesh(inputs[0]) && is_cache(inputs[1]))
     return {SourceKind::kMeshAndCache, {"", {inputs[0], inputs[1]}, {0, 1}}, {}};
-  if (!is_gltf(inputs.front()) && !is_mesh(inputs.front())) refuse(inputs.front());
+  const auto stands_alone = [](const std::string& path) {
+    return is_gltf(path) || is_for_assimp(path);
+  };
+  if (!stands_alone(inputs.front()) && !is_mesh(inputs.front())) refuse(inputs.front());
   for (const std::string& path : inputs)
-    if (extension_of(path) != extension_of(inputs.front()) || is_gltf(path))
+    if (extension_of(path) != extension_of(inputs.front()) || stands_alone(path))
       throw Error(ErrorCode::kUsage,
                   inputs[1] +
                       ": several inputs are an .obj or .ply and the .pc2 or .mdd point "
@@ -112,6 +121,8 @@ ReadResult read_source(const Source& source, const SourceOptions& options, Progr
   const ReadOptions parsed = parse_source_options(options);
   const std::vector<std::string>& files = source.files.files;
   if (source.kind == SourceKind::kGltf) return read_gltf(files.front(), parsed, progress);
+  if (source.kind == SourceKind::kThroughAssimp)
+    return read_with_assimp(files.front(), parsed, progress);
   if (source.kind == SourceKind::kMeshAndCache)
     return read_cached_mesh(files[0], files[1], parsed, progress);
   ReadResult result = read_mesh_sequence(source.files, parsed, progress);

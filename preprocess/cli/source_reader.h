@@ -25,7 +25,7 @@ void add_source_options(CLI::App& command, SourceOptions& options);
 /// Throws Error (kUsage) for a rate out of range or an empty clip name.
 ReadOptions parse_source_options(const SourceOptions& options);
 
-enum class SourceKind { kGltf, kMeshAndCache, kMeshes };
+enum class SourceKind { kGltf, kThroughAssimp, kMeshAndCache, kMeshes };
 
 /// What the names on the command line stand for.
 struct Source {
@@ -34,7 +34,7 @@ struct Source {
   std::vector<std::string> notes;  ///< what was found beside what was named
 };
 
-/// A file (.gltf, .glb); a mesh (.obj, .ply) and the cache that moves it (.pc2, .mdd); or meshes: a
+/// A file (.gltf, .glb, or one that Assimp reads); a mesh (.obj, .ply) and the cache that moves it (.pc2, .mdd); or meshes: a
 /// folder, 'walk_####.obj', several files, or one file, which those numbered after it follow.
 /// Looks into folders and opens no file. Throws Error, naming what is read: kBadInput for a name
 /// that is not, kUsage for names that do not go together, and what numbered_files.h throws.

@@ -8,9 +8,11 @@
 #include <thread>
 
 #include "common/base/isa.h"
+#include "formats/assimp_reader.h"
 #include "tests/cli/baked_sample.h"
 #include "tests/cli/program_run.h"
 #include "tests/cli/sample_mesh.h"
+#include "tests/formats/assimp_samples.h"
 #include "tests/formats/point_cache_builder.h"
 
 namespace mdk::test {
@@ -32,15 +34,17 @@ TEST_F(Bake, TheReportHasExactlyTheFieldsOfTheContract) {
       {"bake", source(), "-o", folder_.file("a.mdk"), "--report", folder_.file("a.json")});
   ASSERT_EQ(bake.status, 0) << bake.err;
   const Json report = Json::parse(read_text(folder_.file("a.json")));
-  EXPECT_EQ(names_of(report), (std::vector<std::string>{
-                                  "schema", "input", "triangles", "vertices", "keys", "clips",
-                                  "clusters", "segments", "rest_key", "stop_reason", "residual_rms",
-                                  "residual_max", "quantization", "sah_cost", "refine_gain",
-                                  "seconds", "peak_memory_bytes", "file_bytes", "growth"}));
+  EXPECT_EQ(names_of(report),
+            (std::vector<std::string>{
+                "schema",      "input",        "read_through",      "triangles",    "vertices",
+                "keys",        "clips",        "clusters",          "segments",     "rest_key",
+                "stop_reason", "residual_rms", "residual_max",      "quantization", "sah_cost",
+                "refine_gain", "seconds",      "peak_memory_bytes", "file_bytes",   "growth"}));
   EXPECT_EQ(names_of(report["seconds"]),
             (std::vector<std::string>{"read", "decompose", "build", "write", "total"}));
   EXPECT_EQ(report["schema"], "mdprep-bake/1");
   EXPECT_EQ(report["input"], source());
+  EXPECT_TRUE(report["read_through"].is_null());
   EXPECT_EQ(report["triangles"], TubeShape{}.triangles());
   EXPECT_EQ(report["keys"], kSampleKeys);
   EXPECT_EQ(report["clips"], Json::parse(R"([{"name":"bend","seconds":1.0,"keys":31},
@@ -118,6 +122,28 @@ TEST_F(Bake, TheDepfileNamesEveryFileThatWasRead) {
   const std::string folder = folder_.path() + "/my\\ files/";
   EXPECT_EQ(read_text(folder_.file("a.d")), folder_.file("a.mdk") + ": \\\n  " + folder +
                                                 "tube.gltf \\\n  " + folder + "tube.bin\n");
+}
+
+TEST_F(Bake, WhatAssimpReadIsSaidByNoteReportAndInfo) {
+  write_text(folder_.file("Bar.MD5MESH"), bending_md5mesh());
+  write_text(folder_.file("Bar.md5anim"), bending_md5anim());
+  const std::string input = folder_.file("Bar.MD5MESH"), baked = folder_.file("bar.mdk");
+  const Outcome bake = run_mdprep({"bake", input, "-o", baked, "-v", "--report",
+                                   folder_.file("bar.json"), "--depfile", folder_.file("bar.d")});
+  if (!has_assimp()) {
+    EXPECT_EQ(bake.status, 3);
+    EXPECT_THAT(bake.err, HasSubstr("libassimp-dev"));
+    GTEST_SKIP() << "Assimp was not there when this was built";
+  }
+  ASSERT_EQ(bake.status, 0) << bake.err;
+  EXPECT_THAT(bake.err, HasSubstr("Bar.MD5MESH was read through Assimp"));
+  EXPECT_THAT(Json::parse(read_text(folder_.file("bar.json")))["read_through"].get<std::string>(),
+              testing::StartsWith("Assimp "));
+  EXPECT_THAT(read_text(folder_.file("bar.d")), HasSubstr("Bar.md5anim"));
+  EXPECT_THAT(run_mdprep({"info", baked}).out, HasSubstr("source read through Assimp"));
+  EXPECT_EQ(Json::parse(run_mdprep({"info", baked, "--json"}).out)["read_through"], "Assimp");
+  const Outcome verify = run_mdprep({"verify", baked, "--source", input});
+  EXPECT_EQ(verify.status, 0) << verify.out;
 }
 
 TEST_F(Bake, ProgressAndSummaryGoToStderrAlone) {

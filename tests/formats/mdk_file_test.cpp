@@ -90,7 +90,7 @@ void expect_same_model(const Model& mapped, const ModelStorage& original) {
 }
 
 TEST_F(MdkFileTest, TellsWhatMadeItWhereThatIsKnown) {
-  const MdkOrigin origin{{1, 20, 300}, 0x0123456789abcdefu};
+  const MdkOrigin origin{{1, 20, 300}, 0x0123456789abcdefu, SourceReader::kAssimp};
   write_mdk(sample_model().view(), path_, {.origin = origin});
   EXPECT_EQ(MdkFile(path_).origin(), origin);
   EXPECT_EQ(MdkFile(written(sample_model())).origin(), MdkOrigin{});
