@@ -11,9 +11,8 @@
 namespace mdk {
 
 std::span<const std::string_view> assimp_extensions() {
-  static constexpr std::array<std::string_view, 12> kExtensions = {
-      ".3ds", ".ase", ".b3d",     ".bvh",  ".dae", ".fbx",
-      ".lws", ".lxo", ".md5mesh", ".ms3d", ".smd", ".x"};
+  static constexpr std::array<std::string_view, 11> kExtensions = {
+      ".3ds", ".ase", ".b3d", ".bvh", ".dae", ".fbx", ".lws", ".md5mesh", ".ms3d", ".smd", ".x"};
   return kExtensions;
 }
 

@@ -22,7 +22,7 @@ class LoadedFile final : public Assimp::IOStream {
   std::size_t Read(void* out, std::size_t size, std::size_t count) override {
     if (size == 0) return 0;
     const std::size_t whole = std::min(count, (bytes_.size() - at_) / size);
-    std::memcpy(out, bytes_.data() + at_, whole * size);
+    if (whole > 0) std::memcpy(out, bytes_.data() + at_, whole * size);
     at_ += whole * size;
     return whole;
   }

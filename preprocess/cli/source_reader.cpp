@@ -80,7 +80,8 @@ bool is_mesh(const std::string& path) {
   const std::string extension = extension_of(path);
   throw bad_input(
       path, (extension.empty() ? "a name without an extension" : "files that end in " + extension) +
-                " cannot be read, only .gltf, .glb, .obj and .ply; export the mesh as glTF");
+                " cannot be read, only .gltf, .glb, .obj, .ply, .fbx, .dae, .md5mesh, .x and a few "
+                "more; export the mesh as glTF");
 }
 
 Source find_one(const std::string& path) {

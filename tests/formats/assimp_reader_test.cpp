@@ -2,10 +2,8 @@
 #include "formats/assimp_reader.h"
 
 #include <gmock/gmock.h>
-#include <sys/resource.h>
 
 #include <cmath>
-#include <fstream>
 #include <numbers>
 #include <random>
 
@@ -128,6 +126,21 @@ TEST_F(ThroughAssimp, Md5MeshesMoveByTheAnimationBesideThem) {
   const ReadResult result = read("bar.md5mesh");
   expect_bending(result.sequence, [](double x, double y) { return vector(x, 0, -y); });
   EXPECT_THAT(result.dependencies, ElementsAre(EndsWith("bar.md5mesh"), EndsWith("bar.md5anim")));
+}
+
+TEST_F(ThroughAssimp, MotionCaptureIsDrawnAsItsBones) {
+  put("walk.bvh", bending_bvh());
+  const PoseSequence s = read("walk.bvh", 2).sequence;
+  ASSERT_EQ(s.key_count(), 3u);
+  const auto nearest = [&](std::uint32_t key, const Vec3f& place) {
+    double least = 1e30;
+    for (const Vec3f& p : s.pose(key))
+      least = std::min(least, length(to_double(p) - to_double(place)));
+    return least;
+  };
+  EXPECT_LT(nearest(0, vector(0, 3, 0)), 1e-5) << "the end of the upper bone";
+  EXPECT_LT(nearest(2, vector(1, 2, 0)), 1e-5);
+  EXPECT_LT(nearest(2, vector(2, 2, 0)), 1e-5) << "the end of the lower one";
 }
 
 TEST_F(ThroughAssimp, XFilesAreTurnedIntoTheRightHand) {
@@ -256,15 +269,18 @@ TEST_F(ThroughAssimp, ASkeletonWithoutMeshIsRefused) {
 
 TEST_F(ThroughAssimp, AFileThatAssimpCrashesOnIsRefused) {
   // One node within another: Assimp follows them by recursion.
+  constexpr int kDepth = 400'000;
   std::string nested;
-  for (int i = 0; i < 400'000; ++i) nested += "<node>";
+  for (int i = 0; i < kDepth; ++i) nested += "<node>";
+  for (int i = 0; i < kDepth; ++i) nested += "</node>";
   std::string text = bending_collada();
   text.insert(text.find("<node id=\"body\""), nested);
   put("deep.dae", text);
-  expect_refused("deep.dae", ErrorCode::kBadInput, "export it again, or as glTF");
+  expect_refused("deep.dae", ErrorCode::kBadInput, "makes Assimp crash");
 }
 
 TEST_F(ThroughAssimp, ASmallFileCannotAskForEndlessMemory) {
+  if (std::string(MDK_SANITIZE) != "") GTEST_SKIP() << "a sanitizer ends the process before";
   std::string text = bending_md5mesh();
   text.replace(text.find("numverts 6"), 10, "numverts 4000000000");
   put("huge.md5mesh", text);

@@ -139,6 +139,15 @@ std::string bending_md5anim() {
   return text;
 }
 
+std::string bending_bvh() {
+  return "HIERARCHY\nROOT Hips\n{\n\tOFFSET 0.0 0.0 0.0\n\tCHANNELS 6 Xposition Yposition "
+         "Zposition Zrotation Xrotation Yrotation\n\tJOINT Knee\n\t{\n\t\tOFFSET 0.0 2.0 0.0\n"
+         "\t\tCHANNELS 3 Zrotation Xrotation Yrotation\n\t\tEnd Site\n\t\t{\n"
+         "\t\t\tOFFSET 0.0 1.0 0.0\n\t\t}\n\t}\n}\nMOTION\nFrames: 3\nFrame Time: 0.5\n"
+         "0.0 0.0 0.0 0.0 0.0 0.0 0.0 0.0 0.0\n1.0 0.0 0.0 0.0 0.0 0.0 45.0 0.0 0.0\n"
+         "2.0 0.0 0.0 0.0 0.0 0.0 90.0 0.0 0.0\n";
+}
+
 std::string moving_x() {
   return "xof 0303txt 0032\n"
          "Frame Mover {\n FrameTransformMatrix {\n  1.0,0.0,0.0,0.0, 0.0,1.0,0.0,0.0, "

@@ -19,6 +19,10 @@ std::string bending_collada(const ColladaOptions& options = {});
 std::string bending_md5mesh();
 std::string bending_md5anim();
 
+/// Bones without a mesh, in a second: "Hips" moves from (0, 0, 0) to (2, 0, 0), "Knee", 2 above it,
+/// turns about z by 90 degrees, and ends 1 above that.
+std::string bending_bvh();
+
 /// A triangle (0, 0, 0), (1, 0, 0), (0, 1, 0) that moves to (2, 3, 4) in 4800 ticks; left-handed.
 std::string moving_x();
 

@@ -13,16 +13,21 @@ namespace {
 
 using testing::ElementsAre;
 
+const std::string kTwoJoints = "{\"joints\": [1, 2]}";
+
 /// The unit triangle on node 0, its vertices on the joints 0, 1 and 0 of skin 0.
 class Trap {
  public:
-  Trap() {
+  /// `nodes`: from 1 on.
+  explicit Trap(const std::vector<std::string>& nodes, const std::string& skin = kTwoJoints) {
     const int positions = b.accessor<float>("VEC3", {0, 0, 0, 1, 0, 0, 0, 1, 0});
     const int joints = b.accessor<std::uint8_t>("VEC4", {0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0});
     const int weights = b.accessor<float>("VEC4", {1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0});
     b.mesh("\"POSITION\": " + std::to_string(positions) + ", \"JOINTS_0\": " +
            std::to_string(joints) + ", \"WEIGHTS_0\": " + std::to_string(weights));
     b.add("nodes", "{\"mesh\": 0, \"skin\": 0}");
+    for (const std::string& node : nodes) b.add("nodes", node);
+    b.add("skins", skin);
   }
 
   /// From the origin at 0 s to `to` at 1 s.
@@ -38,41 +43,33 @@ class Trap {
 };
 
 TEST(GltfTraps, ASkeletonIsCarriedByWhatStandsAboveItsRoot) {
-  Trap trap;
-  trap.b.add("nodes", "{}");                      // 1: a joint
-  trap.b.add("nodes", "{}");                      // 2: a joint
-  trap.b.add("nodes", "{\"children\": [1, 2]}");  // 3: no joint, and it moves
-  trap.b.add("skins", "{\"joints\": [1, 2], \"skeleton\": 1}");
+  Trap trap({"{}",                       // 1: a joint
+             "{}",                       // 2: a joint
+             "{\"children\": [1, 2]}"},  // 3: no joint, and it moves
+            "{\"joints\": [1, 2], \"skeleton\": 1}");
   trap.move(3, {7, 0, 0});
   expect_pose(trap.read(), 0, {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}});
   expect_pose(trap.read(), 1, {{7, 0, 0}, {8, 0, 0}, {7, 1, 0}});
 }
 
 TEST(GltfTraps, ANodeBetweenTwoJointsMovesTheLowerThoughNoSkinNamesIt) {
-  Trap trap;
-  trap.b.add("nodes", "{\"children\": [2]}");  // 1: a joint
-  trap.b.add("nodes", "{\"children\": [3]}");  // 2: between, and it moves
-  trap.b.add("nodes", "{}");                   // 3: a joint
-  trap.b.add("skins", "{\"joints\": [1, 3]}");
+  Trap trap({"{\"children\": [2]}",  // 1: a joint
+             "{\"children\": [3]}",  // 2: between, and it moves
+             "{}"},                  // 3: a joint
+            "{\"joints\": [1, 3]}");
   trap.move(2, {0, 0, 5});
   expect_pose(trap.read(), 1, {{0, 0, 0}, {1, 0, 5}, {0, 1, 0}});
 }
 
 TEST(GltfTraps, ASkinnedMeshBelowItsOwnJointMovesOnce) {
-  Trap trap;
-  trap.b.add("nodes", "{\"children\": [0]}");
-  trap.b.add("nodes", "{}");
-  trap.b.add("skins", "{\"joints\": [1, 2]}");
+  Trap trap({"{\"children\": [0]}", "{}"});
   trap.move(1, {0, 3, 0});
   expect_pose(trap.read(), 1, {{0, 3, 0}, {1, 0, 0}, {0, 4, 0}});
 }
 
 TEST(GltfTraps, SkinsMayShareJointsInAnotherOrderAndWithOtherBindings) {
-  Trap trap;
-  trap.b.add("nodes", "{\"translation\": [10, 0, 0]}");
-  trap.b.add("nodes", "{\"translation\": [0, 20, 0]}");
-  trap.b.add("nodes", "{\"mesh\": 0, \"skin\": 1}");
-  trap.b.add("skins", "{\"joints\": [1, 2]}");
+  Trap trap({"{\"translation\": [10, 0, 0]}", "{\"translation\": [0, 20, 0]}",
+             "{\"mesh\": 0, \"skin\": 1}"});
   const int bindings =
       trap.b.accessor<float>("MAT4", {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0,   -20, 0, 1,
                                       1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, -10, 0,   3, 1});
@@ -83,10 +80,7 @@ TEST(GltfTraps, SkinsMayShareJointsInAnotherOrderAndWithOtherBindings) {
 }
 
 TEST(GltfTraps, WithoutInverseBindMatricesJointsStandWhereTheMeshIs) {
-  Trap trap;
-  trap.b.add("nodes", "{\"translation\": [1, 2, 3]}");
-  trap.b.add("nodes", "{\"scale\": [4, 1, 1]}");
-  trap.b.add("skins", "{\"joints\": [1, 2]}");
+  const Trap trap({"{\"translation\": [1, 2, 3]}", "{\"scale\": [4, 1, 1]}"});
   expect_pose(trap.read(), 0, {{1, 2, 3}, {4, 0, 0}, {1, 3, 3}});
 }
 
@@ -110,10 +104,7 @@ TEST(GltfTraps, MorphWeightsFollowCubicSplines) {
 }
 
 TEST(GltfTraps, ClipsKeepTheirOwnLengths) {
-  Trap trap;
-  trap.b.add("nodes", "{}");
-  trap.b.add("nodes", "{}");
-  trap.b.add("skins", "{\"joints\": [1, 2]}");
+  Trap trap({"{}", "{}"});
   trap.move(1, {1, 0, 0});
   const int times = trap.b.accessor<float>("SCALAR", {2, 5});
   trap.b.animation(2, "translation", times, trap.b.accessor<float>("VEC3", {0, 0, 0, 3, 0, 0}));

@@ -5,11 +5,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <string>
 #include <vector>
 
+#include "tests/formats/fault.h"
 #include "tests/formats/sample_model.h"
 
 namespace mdk::test {
@@ -17,14 +17,6 @@ namespace {
 
 constexpr float kInf = std::numeric_limits<float>::infinity();
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-
-struct Fault {
-  std::string name;
-  std::string sentence;  ///< how it must begin
-  std::function<void(ModelStorage&)> make;
-};
-
-void PrintTo(const Fault& fault, std::ostream* out) { *out << fault.name; }
 
 std::vector<Fault> count_faults() {
   using M = ModelStorage&;
@@ -188,8 +180,6 @@ TEST_P(EveryFault, IsFoundAndNamed) {
   GetParam().make(model);
   EXPECT_THAT(find_inconsistency(model.view()), testing::StartsWith(GetParam().sentence));
 }
-
-std::string fault_name(const testing::TestParamInfo<Fault>& info) { return info.param.name; }
 
 INSTANTIATE_TEST_SUITE_P(Counts, EveryFault, testing::ValuesIn(count_faults()), fault_name);
 INSTANTIATE_TEST_SUITE_P(Motion, EveryFault, testing::ValuesIn(motion_faults()), fault_name);

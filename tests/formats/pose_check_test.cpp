@@ -4,11 +4,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <functional>
 #include <limits>
 #include <string>
 #include <vector>
 
+#include "tests/formats/fault.h"
 #include "tests/formats/sample_model.h"
 
 namespace mdk::test {
@@ -16,14 +16,6 @@ namespace {
 
 constexpr float kInf = std::numeric_limits<float>::infinity();
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-
-struct Fault {
-  std::string name;
-  std::string sentence;  ///< how it must begin
-  std::function<void(ModelStorage&)> make;
-};
-
-void PrintTo(const Fault& fault, std::ostream* out) { *out << fault.name; }
 
 std::vector<Fault> rig_size_faults() {
   using M = ModelStorage&;
@@ -147,8 +139,6 @@ TEST_P(EveryQuantizedFault, IsFoundAndNamed) {
   EXPECT_THAT(fault_after(sample_quantized_model(), GetParam()),
               testing::StartsWith(GetParam().sentence));
 }
-
-std::string fault_name(const testing::TestParamInfo<Fault>& info) { return info.param.name; }
 
 INSTANTIATE_TEST_SUITE_P(All, EveryQuantizedFault, testing::ValuesIn(quantized_faults()),
                          fault_name);

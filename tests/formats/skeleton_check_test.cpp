@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <string>
 #include <vector>
@@ -14,6 +13,7 @@
 #include "formats/mdk_view.h"
 #include "formats/mdk_writer.h"
 #include "formats/model_check.h"
+#include "tests/formats/fault.h"
 #include "tests/formats/sample_model.h"
 #include "tests/formats/temp_folder.h"
 
@@ -21,14 +21,6 @@ namespace mdk::test {
 namespace {
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-
-struct Fault {
-  std::string name;
-  std::string sentence;  ///< how it must begin
-  std::function<void(ModelStorage&)> make;
-};
-
-void PrintTo(const Fault& fault, std::ostream* out) { *out << fault.name; }
 
 std::vector<Fault> faults() {
   using M = ModelStorage&;
@@ -78,8 +70,7 @@ TEST_P(EverySkeletonFault, IsFoundAndNamed) {
   EXPECT_THAT(check_skeleton(model.view()), testing::StartsWith(GetParam().sentence));
 }
 
-INSTANTIATE_TEST_SUITE_P(Skeletons, EverySkeletonFault, testing::ValuesIn(faults()),
-                         [](const auto& tested) { return tested.param.name; });
+INSTANTIATE_TEST_SUITE_P(Skeletons, EverySkeletonFault, testing::ValuesIn(faults()), fault_name);
 
 TEST(SkeletonCheck, ASkeletonNeedsARigAndOneSegment) {
   ModelStorage model = sample_skeleton_model();
