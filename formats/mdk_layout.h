@@ -20,8 +20,8 @@ static_assert(std::endian::native == std::endian::little,
 inline constexpr std::array<unsigned char, 8> kMagic = {0x89, 'M',  'D',  'K',
                                                         '\r', '\n', 0x1a, '\n'};
 inline constexpr std::uint32_t kByteOrder = 0x01020304;
-inline constexpr std::uint16_t kMajorVersion = 2;
-inline constexpr std::uint16_t kMinorVersion = 1;
+inline constexpr std::uint16_t kMajorVersion = 3;
+inline constexpr std::uint16_t kMinorVersion = 0;
 inline constexpr std::uint64_t kAlignment = 64;
 inline constexpr std::uint32_t kMaxSections = 256;
 inline constexpr std::uint32_t kSectionNeeded =
@@ -73,7 +73,8 @@ struct ClipRecord {
 };
 static_assert(sizeof(ClipRecord) == 16);
 
-static_assert(sizeof(Aabb) == 24 && sizeof(Affine3f) == 48 && sizeof(Vec3f) == 12);
+static_assert(sizeof(Aabb) == 24 && sizeof(QuantizedBox) == 12 && sizeof(Affine3f) == 48 &&
+              sizeof(Vec3f) == 12);
 static_assert(sizeof(Triangle) == 12 && sizeof(TexCoord) == 8 && sizeof(KdNode) == 8);
 static_assert(sizeof(Material) == 32 && offsetof(Material, texture) == 16);
 static_assert(sizeof(Texture) == 16 && offsetof(Texture, first_texel) == 8);
@@ -112,6 +113,7 @@ inline constexpr SectionKind kKdRefs{fourcc("REFS"), "kd_refs"};
 inline constexpr SectionKind kTriangles{fourcc("TRIS"), "triangles"};
 inline constexpr SectionKind kSourceTriangles{fourcc("SRCT"), "source_triangles"};
 inline constexpr SectionKind kLocalFromWorld{fourcc("MAPS"), "local_from_world"};
+inline constexpr SectionKind kKeyBoxes{fourcc("KBOX"), "key_boxes"};
 inline constexpr SectionKind kWorldBoxes{fourcc("WBOX"), "cluster_world_boxes"};
 inline constexpr SectionKind kFuzzyBoxes{fourcc("FBOX"), "fuzzy_boxes"};
 inline constexpr SectionKind kMaterials{fourcc("MATL"), "materials"};
@@ -152,6 +154,7 @@ void for_each_array(ModelRef&& model, Visit&& visit) {
   visit(kTriangles, model.triangles);
   visit(kSourceTriangles, model.source_triangles);
   visit(kLocalFromWorld, model.local_from_world);
+  visit(kKeyBoxes, model.key_boxes);
   visit(kWorldBoxes, model.cluster_world_boxes);
   visit(kFuzzyBoxes, model.fuzzy_boxes);
   visit(kMaterials, model.materials);

@@ -34,6 +34,11 @@ bool is_box(const Aabb& b) {
   return ok;
 }
 
+/// In a frame that is a finite box it lies as one, too.
+bool is_box(const QuantizedBox& b) {
+  return b.lo[0] <= b.hi[0] && b.lo[1] <= b.hi[1] && b.lo[2] <= b.hi[2];
+}
+
 /// No stray continuation, overlong form, surrogate or value past U+10FFFF.
 bool is_utf8(const std::string& text) {
   for (std::size_t i = 0; i < text.size();) {
@@ -76,6 +81,7 @@ std::string check_counts(const Model& m) {
   const std::string sizes[] = {
       count_fault("source_triangles", m.source_triangles.size(), triangles),
       count_fault("local_from_world", m.local_from_world.size(), keys * clusters),
+      count_fault("key_boxes", m.key_boxes.size(), keys),
       count_fault("cluster_world_boxes", m.cluster_world_boxes.size(), keys * clusters),
       count_fault("fuzzy_trees", m.fuzzy_trees.size(), segments * clusters),
       count_fault("fuzzy_boxes", m.fuzzy_boxes.size(), segments * triangles),
@@ -226,12 +232,14 @@ std::string check_trees(const Model& m) {
 
 std::string check_boxes_and_maps(const Model& m) {
   for (std::size_t i = 0; i < m.fuzzy_boxes.size(); ++i) {
-    if (!is_box(m.fuzzy_boxes[i]))
-      return "fuzzy_boxes: number " + number(i) + " is not a finite box";
+    if (!is_box(m.fuzzy_boxes[i])) return "fuzzy_boxes: number " + number(i) + " is not a box";
+  }
+  for (std::size_t i = 0; i < m.key_boxes.size(); ++i) {
+    if (!is_box(m.key_boxes[i])) return "key_boxes: number " + number(i) + " is not a finite box";
   }
   for (std::size_t i = 0; i < m.cluster_world_boxes.size(); ++i) {
     if (!is_box(m.cluster_world_boxes[i])) {
-      return "cluster_world_boxes: number " + number(i) + " is not a finite box";
+      return "cluster_world_boxes: number " + number(i) + " is not a box";
     }
   }
   for (std::size_t i = 0; i < m.local_from_world.size(); ++i) {

@@ -33,28 +33,45 @@ void permute(std::vector<T>& items, std::span<const std::uint32_t> sources,
   items = std::move(sorted);
 }
 
-std::span<const Aabb> boxes_of(const ModelStorage& model, std::uint32_t segment,
-                               const Cluster& cluster) {
-  const std::size_t first = segment * model.triangles.size() + cluster.first_triangle;
-  return std::span(model.fuzzy_boxes).subspan(first, cluster.triangle_count);
+/// Appends a segment's boxes as they are stored: in their clusters' local boxes, which are the
+/// smallest there are.
+void append_fuzzy_boxes(std::span<const Aabb> boxes, ModelStorage& model) {
+  for (const Cluster& cluster : model.clusters) {
+    const auto own = boxes.subspan(cluster.first_triangle, cluster.triangle_count);
+    FuzzyTree& tree = model.fuzzy_trees.emplace_back();
+    for (const Aabb& box : own) tree.local_box.extend(box);
+    for (const Aabb& box : own) model.fuzzy_boxes.push_back(quantize_outward(box, tree.local_box));
+  }
+}
+
+/// `boxes`: F * K, key-major.
+void set_world_boxes(std::span<const Aabb> boxes, ModelStorage& model) {
+  const std::size_t clusters = model.clusters.size();
+  model.cluster_world_boxes.reserve(boxes.size());
+  for (std::size_t first = 0; first < boxes.size(); first += clusters) {
+    const auto of_key = boxes.subspan(first, clusters);
+    Aabb& whole = model.key_boxes.emplace_back();
+    for (const Aabb& box : of_key) whole.extend(box);
+    for (const Aabb& box : of_key)
+      model.cluster_world_boxes.push_back(quantize_outward(box, whole));
+    model.bounds.extend(whole);
+  }
 }
 
 /// What the cost needs to know about one cluster of the finished model in one segment.
-ClusterWork cluster_work(const ModelStorage& model, std::uint32_t segment, std::size_t cluster,
+ClusterWork cluster_work(const Model& model, std::uint32_t segment, std::size_t cluster,
                          const AreaWeightTable& weights, std::span<const double> model_areas) {
   const Segment& keys = model.segments[segment];
   double met = 0, counted = 0;
-  for (std::size_t key = keys.first_key; key <= keys.last_key; ++key) {
+  for (std::uint32_t key = keys.first_key; key <= keys.last_key; ++key) {
     if (!(model_areas[key] > 0)) continue;
-    met += model.cluster_world_boxes[key * model.clusters.size() + cluster].surface_area() /
-           model_areas[key];
+    met += model.world_box(key, cluster).surface_area() / model_areas[key];
     counted += 1;
   }
   ClusterWork work;
   work.weights = weights.mean(cluster, keys.first_key, keys.last_key);
   work.hit_probability = counted > 0 ? met / counted : 1;
-  const Cluster& c = model.clusters[cluster];
-  for (const Aabb& box : boxes_of(model, segment, c)) work.fuzzy_boxes.add(box);
+  for (const Aabb& box : model.cluster_fuzzy_boxes(segment, cluster)) work.fuzzy_boxes.add(box);
   return work;
 }
 
@@ -65,31 +82,34 @@ AreaWeights tree_weights(const AreaWeights& w) {
   return {w.xy / largest, w.yz / largest, w.zx / largest};
 }
 
-/// `work`: S * K, segment-major.
+/// Into the trees whose local boxes are there. `work`: S * K, segment-major.
 void build_fuzzy_trees(ModelStorage& model, std::span<const ClusterWork> work,
                        ProgressSink& progress) {
   const std::size_t clusters = model.clusters.size();
+  const Model view = model.view();
   std::vector<KdTree> trees(work.size());
   parallel_chunks(trees.size(), 1, [&](std::size_t i, std::size_t) {
-    const Cluster& cluster = model.clusters[i % clusters];
     KdBuildConfig config;
     config.area = tree_weights(work[i].weights);
     config.intersect_cost = kTestCost;
-    trees[i] = build_kd_tree(boxes_of(model, static_cast<std::uint32_t>(i / clusters), cluster),
-                             cluster.first_triangle, config);
+    trees[i] = build_kd_tree(
+        view.cluster_fuzzy_boxes(static_cast<std::uint32_t>(i / clusters), i % clusters),
+        model.clusters[i % clusters].first_triangle, config);
   });
   progress.report("build", 0.9);
   constexpr std::size_t kMostLinks = std::numeric_limits<std::uint32_t>::max();
-  for (const KdTree& tree : trees) {
+  for (std::size_t i = 0; i < trees.size(); ++i) {
+    const KdTree& tree = trees[i];
     if (tree.nodes.size() > kMostLinks - model.kd_nodes.size() ||
         tree.refs.size() > kMostLinks - model.kd_refs.size())
       throw Error(ErrorCode::kOverLimit,
                   "the fuzzy kd-trees have more than 2^32 nodes or references: ask for fewer "
                   "segments");
-    model.fuzzy_trees.push_back({static_cast<std::uint32_t>(model.kd_nodes.size()),
-                                 static_cast<std::uint32_t>(tree.nodes.size()),
-                                 static_cast<std::uint32_t>(model.kd_refs.size()),
-                                 static_cast<std::uint32_t>(tree.refs.size()), tree.bounds});
+    FuzzyTree& stored = model.fuzzy_trees[i];
+    stored.first_node = static_cast<std::uint32_t>(model.kd_nodes.size());
+    stored.node_count = static_cast<std::uint32_t>(tree.nodes.size());
+    stored.first_ref = static_cast<std::uint32_t>(model.kd_refs.size());
+    stored.ref_count = static_cast<std::uint32_t>(tree.refs.size());
     model.kd_nodes.insert(model.kd_nodes.end(), tree.nodes.begin(), tree.nodes.end());
     model.kd_refs.insert(model.kd_refs.end(), tree.refs.begin(), tree.refs.end());
   }
@@ -139,16 +159,15 @@ AssembledModel assemble_model(PoseSequence sequence, const ClusterMembers& membe
   for (const Vec3f& v : sequence.pose(parts.rest_key)) rest_box.extend(to_double(v));
   model.rest_diagonal = rest_box.diagonal();
   model.segments = std::move(parts.segments);
+  model.clusters = cluster_ranges(members);
   model.fuzzy_boxes.reserve(model.segments.size() * sequence.triangles.size());
   for (const Segment& segment : model.segments) {
-    const std::vector<Aabb> boxes = fuzzy_boxes(sequence, members, parts.local_from_world, segment);
-    model.fuzzy_boxes.insert(model.fuzzy_boxes.end(), boxes.begin(), boxes.end());
+    std::vector<Aabb> boxes = fuzzy_boxes(sequence, members, parts.local_from_world, segment);
+    for (std::size_t t = 0; t < parts.pose_space_boxes.size(); ++t)
+      boxes[t].extend(parts.pose_space_boxes[t]);
+    append_fuzzy_boxes(boxes, model);
   }
-  for (std::size_t t = 0; t < parts.pose_space_boxes.size(); ++t)
-    model.fuzzy_boxes[t].extend(parts.pose_space_boxes[t]);
-  model.cluster_world_boxes = cluster_world_boxes(sequence, members);
-  for (const Aabb& box : model.cluster_world_boxes) model.bounds.extend(box);
-  model.clusters = cluster_ranges(members);
+  set_world_boxes(cluster_world_boxes(sequence, members), model);
   model.local_from_world = std::move(parts.local_from_world);
   model.vertex_count = sequence.vertex_count;
   model.triangles = std::move(sequence.triangles);
@@ -156,10 +175,11 @@ AssembledModel assemble_model(PoseSequence sequence, const ClusterMembers& membe
 
   const std::vector<double> model_areas = pose_box_areas(sequence);
   const AreaWeightTable weights(model.local_from_world, model_areas, {});
+  const Model view = model.view();
   std::vector<ClusterWork> work;
   for (std::uint32_t s = 0; s < model.segments.size(); ++s)
     for (std::size_t c = 0; c < model.clusters.size(); ++c)
-      work.push_back(cluster_work(model, s, c, weights, model_areas));
+      work.push_back(cluster_work(view, s, c, weights, model_areas));
   result.expected_work = mean_work(model.segments, work);
   build_fuzzy_trees(model, work, progress);
 

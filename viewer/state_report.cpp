@@ -76,7 +76,7 @@ Json picked_json(const ViewState& state) {
   const PickedTriangle& picked = *state.picked;
   const Moment moment = state.last_frame ? state.last_frame->moment : Moment{};
   const Model& model = *state.model();
-  const Aabb& box = model.segment_boxes(segment_of(model, moment))[picked.triangle];
+  const Aabb box = model.fuzzy_box(segment_of(model, moment), picked.cluster, picked.triangle);
   return {{"triangle", picked.triangle},
           {"source_triangle", model.source_triangles[picked.triangle]},
           {"cluster", picked.cluster},

@@ -19,6 +19,7 @@ Model ModelStorage::view() const {
   model.source_triangles = source_triangles;
   model.clusters = clusters;
   model.local_from_world = local_from_world;
+  model.key_boxes = key_boxes;
   model.cluster_world_boxes = cluster_world_boxes;
   model.skeleton = skeleton.view();
   model.cluster_bones = cluster_bones;
@@ -34,6 +35,14 @@ Model ModelStorage::view() const {
   model.textures = appearance.textures;
   model.texels = appearance.texels;
   return model;
+}
+
+std::vector<Aabb> Model::cluster_fuzzy_boxes(std::uint32_t segment, std::size_t cluster) const {
+  const Cluster& range = clusters[cluster];
+  std::vector<Aabb> boxes(range.triangle_count);
+  for (std::size_t i = 0; i < boxes.size(); ++i)
+    boxes[i] = fuzzy_box(segment, cluster, range.first_triangle + i);
+  return boxes;
 }
 
 KeyInterval locate_time(const Model& model, std::uint32_t clip_index, double seconds) {
@@ -90,8 +99,8 @@ void decode_pose(const Model& model, std::uint32_t key, VertexRange range, std::
 Aabb clip_bounds(const Model& model, std::uint32_t clip) {
   Aabb bounds;
   const Clip& keys = model.clips[clip];
-  for (std::uint32_t k = 0; k < keys.key_count; ++k)
-    for (const Aabb& box : model.key_world_boxes(keys.first_key + k)) bounds.extend(box);
+  for (const Aabb& box : model.key_boxes.subspan(keys.first_key, keys.key_count))
+    bounds.extend(box);
   return bounds;
 }
 

@@ -12,6 +12,7 @@
 
 #include "common/math/aabb.h"
 #include "common/math/affine3.h"
+#include "common/math/quantized_box.h"
 #include "common/motion/appearance.h"
 #include "common/motion/pose_sequence.h"
 #include "common/motion/pose_source.h"
@@ -44,7 +45,7 @@ struct Segment {
 struct FuzzyTree {
   std::uint32_t first_node = 0, node_count = 0;  ///< in kd_nodes
   std::uint32_t first_ref = 0, ref_count = 0;    ///< in kd_refs
-  Aabb local_box;  ///< holds the fuzzy boxes of the cluster in the segment
+  Aabb local_box;  ///< what the fuzzy boxes of the cluster in the segment are quantised in
 };
 
 /// The bone that a cluster follows: local_from_world = local_from_base * bone⁻¹. 52 bytes, as the
@@ -73,15 +74,16 @@ struct Model {
   std::span<const Triangle> triangles;              ///< T, sorted by cluster
   std::span<const std::uint32_t> source_triangles;  ///< T: the triangle's number in the input
 
-  std::span<const Cluster> clusters;           ///< K
-  std::span<const Affine3f> local_from_world;  ///< F * K, key-major
-  std::span<const Aabb> cluster_world_boxes;   ///< F * K, key-major
+  std::span<const Cluster> clusters;                  ///< K
+  std::span<const Affine3f> local_from_world;         ///< F * K, key-major
+  std::span<const Aabb> key_boxes;                    ///< F: the mesh at each key
+  std::span<const QuantizedBox> cluster_world_boxes;  ///< F * K, key-major, in the key's box
 
-  std::span<const Segment> segments;       ///< S, at least one
-  std::span<const FuzzyTree> fuzzy_trees;  ///< S * K, segment-major
-  std::span<const Aabb> fuzzy_boxes;       ///< S * T, segment-major, in the cluster's local basis
-  std::span<const KdNode> kd_nodes;        ///< node links relative to the tree's first node
-  std::span<const std::uint32_t> kd_refs;  ///< triangle indices (absolute)
+  std::span<const Segment> segments;          ///< S, at least one
+  std::span<const FuzzyTree> fuzzy_trees;     ///< S * K, segment-major
+  std::span<const QuantizedBox> fuzzy_boxes;  ///< S * T, segment-major, in the tree's local box
+  std::span<const KdNode> kd_nodes;           ///< node links relative to the tree's first node
+  std::span<const std::uint32_t> kd_refs;     ///< triangle indices (absolute)
 
   std::span<const Material> materials;
   std::span<const std::uint32_t> triangle_materials;  ///< T
@@ -100,15 +102,20 @@ struct Model {
     return local_from_world.subspan(static_cast<std::size_t>(key) * clusters.size(),
                                     clusters.size());
   }
-  std::span<const Aabb> key_world_boxes(std::uint32_t key) const {
-    return cluster_world_boxes.subspan(static_cast<std::size_t>(key) * clusters.size(),
-                                       clusters.size());
+  /// Holds a cluster at a key, in world space.
+  Aabb world_box(std::uint32_t key, std::size_t cluster) const {
+    return dequantize(
+        cluster_world_boxes[static_cast<std::size_t>(key) * clusters.size() + cluster],
+        key_boxes[key]);
   }
-  /// T boxes that hold at every time of a segment.
-  std::span<const Aabb> segment_boxes(std::uint32_t segment) const {
-    return fuzzy_boxes.subspan(static_cast<std::size_t>(segment) * triangles.size(),
-                               triangles.size());
+  /// Holds a triangle, which must be the cluster's, at every time of a segment, in the cluster's
+  /// local basis.
+  Aabb fuzzy_box(std::uint32_t segment, std::size_t cluster, std::size_t triangle) const {
+    return dequantize(fuzzy_boxes[static_cast<std::size_t>(segment) * triangles.size() + triangle],
+                      segment_trees(segment)[cluster].local_box);
   }
+  /// The fuzzy boxes of a cluster's triangles in a segment. Cost: O(triangles of the cluster).
+  std::vector<Aabb> cluster_fuzzy_boxes(std::uint32_t segment, std::size_t cluster) const;
   /// Trees of all clusters in a segment.
   std::span<const FuzzyTree> segment_trees(std::uint32_t segment) const {
     return fuzzy_trees.subspan(static_cast<std::size_t>(segment) * clusters.size(),
@@ -139,10 +146,11 @@ struct ModelStorage {
   std::vector<std::uint32_t> source_triangles;
   std::vector<Cluster> clusters;
   std::vector<Affine3f> local_from_world;
-  std::vector<Aabb> cluster_world_boxes;
+  std::vector<Aabb> key_boxes;
+  std::vector<QuantizedBox> cluster_world_boxes;
   std::vector<Segment> segments;
   std::vector<FuzzyTree> fuzzy_trees;
-  std::vector<Aabb> fuzzy_boxes;
+  std::vector<QuantizedBox> fuzzy_boxes;
   std::vector<KdNode> kd_nodes;
   std::vector<std::uint32_t> kd_refs;
   Appearance appearance;
@@ -175,7 +183,7 @@ std::uint32_t segment_of(const Model& model, const KeyInterval& at);
 /// the same bits, whichever ranges are asked for. Cost: O(range), and O(bones) for a rig.
 void decode_pose(const Model& model, std::uint32_t key, VertexRange range, std::span<Vec3f> out);
 
-/// A box that holds the mesh at every time of a clip. Cost: O(keys of the clip * clusters).
+/// A box that holds the mesh at every time of a clip. Cost: O(keys of the clip).
 Aabb clip_bounds(const Model& model, std::uint32_t clip);
 
 /// Which clip a key belongs to. Cost: O(log clips).

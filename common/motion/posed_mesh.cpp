@@ -180,9 +180,9 @@ Aabb PosedMesh::cluster_box(std::uint32_t c) const {
 }
 
 Aabb cluster_world_box(const Model& model, std::uint32_t c, const KeyInterval& at) {
-  const Aabb& from = model.key_world_boxes(at.key0)[c];
+  const Aabb from = model.world_box(at.key0, c);
   if (at.s == 0.0f || at.key0 == at.key1) return from;
-  const Aabb& to = model.key_world_boxes(at.key1)[c];
+  const Aabb to = model.world_box(at.key1, c);
   const double s = at.s;
   const auto lerp = [s](const Vec3f& a, const Vec3f& b) {
     const Vec3d from_d = to_double(a);

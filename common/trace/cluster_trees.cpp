@@ -18,11 +18,8 @@ std::size_t ClusterTrees::bytes() const {
 ClusterTrees build_cluster_trees(const Model& model, std::uint32_t segment) {
   ClusterTrees built;
   built.trees.resize(model.cluster_count());
-  const std::span<const Aabb> boxes = model.segment_boxes(segment);
   parallel_chunks(built.trees.size(), 1, [&](std::size_t c, std::size_t) {
-    const Cluster& cluster = model.clusters[c];
-    built.trees[c] =
-        build_wide_bvh(boxes.subspan(cluster.first_triangle, cluster.triangle_count), kBins);
+    built.trees[c] = build_wide_bvh(model.cluster_fuzzy_boxes(segment, c), kBins);
   });
   for (std::size_t c = 0; c < built.trees.size(); ++c) {
     built.first_leaf.push_back(static_cast<std::uint32_t>(built.blocks.size()));

@@ -11,14 +11,12 @@ namespace {
 
 /// Area of all fuzzy boxes of one key's segment, in the world.
 double fuzzy_area_at(const Model& model, std::uint32_t key) {
-  const auto boxes = model.segment_boxes(segment_of(model, at_key(key)));
+  const std::uint32_t segment = segment_of(model, at_key(key));
   const auto maps = model.key_maps(key);
   double sum = 0;
   for (std::size_t c = 0; c < model.clusters.size(); ++c) {
-    const Cluster& cluster = model.clusters[c];
     FaceSums sums;
-    for (const Aabb& box : boxes.subspan(cluster.first_triangle, cluster.triangle_count))
-      sums.add(box);
+    for (const Aabb& box : model.cluster_fuzzy_boxes(segment, c)) sums.add(box);
     sum += sums.area(world_area_weights(to_double(maps[c])));
   }
   return sum;

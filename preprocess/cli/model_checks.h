@@ -26,8 +26,8 @@ std::uint64_t interval_count(const Model& model);
 std::vector<CheckResult> check_boxes(const Model& model, std::span<const KeyInterval> between,
                                      ProgressSink& progress);
 
-/// Clusters' local boxes hold their fuzzy boxes, and every leaf of a fuzzy kd-tree lists each
-/// triangle whose fuzzy box reaches into it, so no ray can miss one.
-std::vector<CheckResult> check_trees(const Model& model, ProgressSink& progress);
+/// Every leaf of a fuzzy kd-tree lists each triangle whose fuzzy box reaches into it, so no ray can
+/// miss one.
+CheckResult check_trees(const Model& model, ProgressSink& progress);
 
 }  // namespace mdk

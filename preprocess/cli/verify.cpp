@@ -88,7 +88,7 @@ VerifyReport verify_file(const MdkFile& file, const VerifyArguments& arguments,
   report.samples = static_cast<std::uint32_t>(between.size());
   ProgressPart boxes(progress, 0.05, 0.4), trees(progress, 0.4, 0.45), hits(progress, 0.45, 0.95);
   report.add(check_boxes(model, between, boxes));
-  report.add(check_trees(model, trees));
+  report.add({check_trees(model, trees)});
   const std::vector<CheckResult> hit_results =
       check_hits(model, {}, random_moments(model, kHitMoments, report.seed + 1), hits);
   for (const CheckResult& result : hit_results) report.hit_mismatches += result.failures;

@@ -205,7 +205,7 @@ TEST(Agreement, FuzzyStructuresPoseOnlyWhatRaysComeNear) {
   const Camera whole = fit_camera(model.bounds, 1.0);
   Camera away = whole, end = whole;
   away.target = whole.eye + (whole.eye - whole.target);
-  end.target = model.cluster_world_boxes[0].center();
+  end.target = model.world_box(0, 0).center();
   end.vertical_fov_deg = 4;
   for (const char* id : {"fuzzy-bvh", "fuzzy-kdtree"}) {
     EXPECT_EQ(posed_to_show(model, id, away), 0u) << id;
@@ -222,7 +222,7 @@ TEST(Agreement, PicturesDoNotDependOnWhatWasPosedBefore) {
   FrameRequest close;
   close.camera = fit_camera(model.bounds, 1.0);
   close.width = close.height = 96;
-  close.camera.target = model.cluster_world_boxes[0].center();
+  close.camera.target = model.world_box(0, 0).center();
   close.camera.vertical_fov_deg = 4;
   FrameRequest whole = close;
   whole.camera = fit_camera(model.bounds, 1.0);

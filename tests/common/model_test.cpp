@@ -102,12 +102,11 @@ TEST(ClipOfKey, FindsTheClipThatHoldsTheKey) {
   for (std::uint32_t key = 0; key < 8; ++key) EXPECT_EQ(clip_of_key(model, key), expected[key]);
 }
 
-TEST(ClipBounds, HoldEveryClustersBoxAtEveryKeyOfTheClipAndNoOther) {
+TEST(ClipBounds, HoldTheMeshAtEveryKeyOfTheClipAndNoOther) {
   ModelStorage storage = three_clips();
-  storage.clusters.resize(2);
-  for (std::size_t i = 0; i < 8 * 2; ++i) {
-    const auto at = static_cast<float>(i);
-    storage.cluster_world_boxes.push_back({{at, 0, 0}, {at + 1, 1, 1}});
+  for (std::size_t i = 0; i < 8; ++i) {
+    const auto at = static_cast<float>(2 * i);
+    storage.key_boxes.push_back({{at, 0, 0}, {at + 2, 1, 1}});
   }
   const Model model = storage.view();
   EXPECT_EQ(clip_bounds(model, 0), (Aabb{{0, 0, 0}, {6, 1, 1}}));

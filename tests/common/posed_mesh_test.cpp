@@ -24,9 +24,10 @@ ModelStorage two_keys(std::uint32_t vertices) {
   for (std::uint32_t i = 0; i < 2 * vertices; ++i)
     m.poses.key_positions.push_back({unit(random), unit(random), unit(random)});
   for (std::uint32_t i = 0; i + 2 < vertices; i += 3) m.triangles.push_back({{i, i + 1, i + 2}});
-  m.cluster_world_boxes.resize(2);
+  m.key_boxes.resize(2);
   for (std::size_t i = 0; i < m.poses.key_positions.size(); ++i)
-    m.cluster_world_boxes[i / vertices].extend(m.poses.key_positions[i]);
+    m.key_boxes[i / vertices].extend(m.poses.key_positions[i]);
+  for (const Aabb& box : m.key_boxes) m.cluster_world_boxes.push_back(quantize_outward(box, box));
   m.clusters.resize(1);
   m.clusters[0].triangle_count = static_cast<std::uint32_t>(m.triangles.size());
   return m;

@@ -33,7 +33,8 @@ ModelStorage square(float angle, const Vec3f& path) {
   m.source_triangles = {0, 1};
   m.clusters.resize(1);
   m.clusters[0].triangle_count = 2;
-  m.cluster_world_boxes = {m.bounds, m.bounds};
+  m.key_boxes = {m.bounds, m.bounds};
+  m.cluster_world_boxes.assign(2, quantize_outward(m.bounds, m.bounds));
   m.local_from_world.resize(2);
   m.appearance.materials = {Material{.base_color = {1, 1, 1, 1}, .flags = kMaterialUnlit}};
   m.appearance.triangle_materials = {0, 0};

@@ -88,7 +88,8 @@ ModelStorage colored_square() {
   m.source_triangles = {0, 1};
   m.clusters.resize(1);
   m.clusters[0].triangle_count = 2;
-  m.cluster_world_boxes = {m.bounds};
+  m.key_boxes = {m.bounds};
+  m.cluster_world_boxes = {quantize_outward(m.bounds, m.bounds)};
   m.local_from_world.resize(1);
   m.appearance.materials = {Material{.base_color = {1, 0, 0, 1}, .flags = kMaterialUnlit},
                             Material{.base_color = {0, 1, 0, 1}}};

@@ -74,6 +74,7 @@ void expect_same_model(const Model& mapped, const ModelStorage& original) {
   expect_same("source_triangles", mapped.source_triangles, original.source_triangles);
   expect_same("clusters", mapped.clusters, original.clusters);
   expect_same("local_from_world", mapped.local_from_world, original.local_from_world);
+  expect_same("key_boxes", mapped.key_boxes, original.key_boxes);
   expect_same("cluster_world_boxes", mapped.cluster_world_boxes, original.cluster_world_boxes);
   expect_same("segments", mapped.segments, original.segments);
   expect_same("fuzzy_trees", mapped.fuzzy_trees, original.fuzzy_trees);

@@ -27,15 +27,13 @@ class Walk {
   std::uint64_t everything() {
     for (std::uint32_t clip = 0; clip < model_.clips.size(); ++clip) times(clip);
     for (std::uint32_t s = 0; s < model_.segment_count(); ++s)
-      for (const FuzzyTree& fuzzy : model_.segment_trees(s))
-        tree(model_.tree_view(fuzzy), model_.segment_boxes(s));
+      for (std::uint32_t c = 0; c < model_.cluster_count(); ++c) fuzzy(s, c);
     for (std::uint32_t t = 0; t < model_.triangle_count(); ++t) look(t);
     for (std::uint32_t key = 0; key < model_.key_count(); ++key) {
       for (const Affine3f& map : model_.key_maps(key)) see(map);
-      for (const Aabb& box : model_.key_world_boxes(key)) see(box);
+      for (std::uint32_t c = 0; c < model_.cluster_count(); ++c) see_box(model_.world_box(key, c));
       EXPECT_LT(clip_of_key(model_, key), model_.clips.size());
     }
-    for (const Aabb& box : model_.fuzzy_boxes) see(box);
     return digest_;
   }
 
@@ -45,6 +43,13 @@ class Walk {
     unsigned char bytes[sizeof(T)];
     std::memcpy(bytes, &value, sizeof(T));
     for (const unsigned char byte : bytes) digest_ = digest_ * 31 + byte;
+  }
+
+  void see_box(const Aabb& box) {
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      EXPECT_TRUE(std::isfinite(box.lo[axis]) && box.lo[axis] <= box.hi[axis] &&
+                  std::isfinite(box.hi[axis]));
+    see(box);
   }
 
   /// Decoded when it is first asked for.
@@ -72,7 +77,9 @@ class Walk {
   }
 
   /// Depth first with a stack of the length the traversals have.
-  void tree(const KdTreeView& tree, std::span<const Aabb> boxes) {
+  void fuzzy(std::uint32_t segment, std::uint32_t cluster) {
+    const KdTreeView tree = model_.tree_view(model_.segment_trees(segment)[cluster]);
+    for (const Aabb& box : model_.cluster_fuzzy_boxes(segment, cluster)) see_box(box);
     std::uint32_t stack[kMaxKdDepth + 1];
     std::size_t height = 0, steps = 0, refs = 0;
     stack[height++] = 0;
@@ -87,15 +94,15 @@ class Walk {
       }
       ASSERT_LE(refs += node.ref_count(), tree.refs.size()) << "a reference is listed twice";
       for (const std::uint32_t t : tree.refs.subspan(node.first_ref(), node.ref_count()))
-        corners(t, boxes);
+        corners(segment, cluster, t);
     }
   }
 
-  void corners(std::uint32_t triangle, std::span<const Aabb> boxes) {
+  void corners(std::uint32_t segment, std::uint32_t cluster, std::uint32_t triangle) {
     for (const std::uint32_t v : model_.triangles[triangle].v) {
       for (std::uint32_t key = 0; key < model_.key_count(); ++key) see(pose(key)[v]);
     }
-    see(boxes[triangle]);
+    see_box(model_.fuzzy_box(segment, cluster, triangle));
   }
 
   void look(std::uint32_t triangle) {

@@ -33,8 +33,9 @@ std::vector<Fault> count_faults() {
       {"no_nodes", "kd_nodes: 0", [](M m) { m.kd_nodes.clear(); }},
       {"sources_cut", "source_triangles: 5", [](M m) { m.source_triangles.pop_back(); }},
       {"maps_cut", "local_from_world: 5", [](M m) { m.local_from_world.pop_back(); }},
+      {"key_boxes_cut", "key_boxes: 2 of them, not 3", [](M m) { m.key_boxes.pop_back(); }},
       {"world_boxes_long", "cluster_world_boxes: 7",
-       [](M m) { m.cluster_world_boxes.push_back(m.bounds); }},
+       [](M m) { m.cluster_world_boxes.push_back({}); }},
       {"no_segments", "segments: 0", [](M m) { m.segments.clear(); }},
       {"more_segments_than_keys", "segments: 4", [](M m) { m.segments.resize(4); }},
       {"segment_without_boxes", "fuzzy_trees: 4 of them, not 6", [](M m) { m.segments.resize(3); }},
@@ -95,13 +96,20 @@ std::vector<Fault> motion_faults() {
          m.fuzzy_trees.resize(2);
          m.fuzzy_boxes.resize(6);
        }},
-      {"world_box_nan", "cluster_world_boxes: number 3",
-       [](M m) { m.cluster_world_boxes[3].lo.y = kNan; }},
+      {"key_box_nan", "key_boxes: number 2", [](M m) { m.key_boxes[2].lo.y = kNan; }},
+      {"key_box_infinite", "key_boxes: number 0", [](M m) { m.key_boxes[0].hi.z = kInf; }},
+      {"key_box_inverted", "key_boxes: number 1",
+       [](M m) { std::swap(m.key_boxes[1].lo, m.key_boxes[1].hi); }},
       {"world_box_inverted", "cluster_world_boxes: number 1",
        [](M m) { std::swap(m.cluster_world_boxes[1].lo, m.cluster_world_boxes[1].hi); }},
-      {"fuzzy_box_infinite", "fuzzy_boxes: number 11", [](M m) { m.fuzzy_boxes[11].hi.z = kInf; }},
-      {"fuzzy_box_minus_infinite", "fuzzy_boxes: number 0",
-       [](M m) { m.fuzzy_boxes[0].lo.x = -kInf; }},
+      {"fuzzy_box_inverted", "fuzzy_boxes: number 11",
+       [](M m) {
+         m.fuzzy_boxes[11] = {{0, 0, 2}, {0, 0, 1}};
+       }},
+      {"fuzzy_box_past_its_end", "fuzzy_boxes: number 0",
+       [](M m) {
+         m.fuzzy_boxes[0] = {{65535, 0, 0}, {65534, 0, 0}};
+       }},
       {"map_infinite", "local_from_world: map 2",
        [](M m) { m.local_from_world[2].m[2][3] = kInf; }},
       {"map_nan", "local_from_world: map 5", [](M m) { m.local_from_world[5].m[0][0] = kNan; }},

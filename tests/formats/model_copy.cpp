@@ -29,6 +29,7 @@ ModelStorage copy_of(const Model& model) {
   copy_list(copy.source_triangles, model.source_triangles);
   copy_list(copy.clusters, model.clusters);
   copy_list(copy.local_from_world, model.local_from_world);
+  copy_list(copy.key_boxes, model.key_boxes);
   copy_list(copy.cluster_world_boxes, model.cluster_world_boxes);
   copy_list(copy.skeleton.joints, model.skeleton.joints);
   copy_list(copy.skeleton.names, model.skeleton.names);

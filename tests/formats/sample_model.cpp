@@ -55,19 +55,23 @@ void add_clusters(ModelStorage& model) {
     back.m[1][3] = -y;
     model.local_from_world.push_back(back);
     model.local_from_world.push_back(Affine3f{});
-    model.cluster_world_boxes.push_back({{0, y, 0}, {2, y + 1, 0}});
-    model.cluster_world_boxes.push_back(still);
+    const Aabb risen{{0, y, 0}, {2, y + 1, 0}};
+    const Aabb whole{risen.lo, {2, still.hi.y, still.hi.z}};
+    model.key_boxes.push_back(whole);
+    model.cluster_world_boxes.push_back(quantize_outward(risen, whole));
+    model.cluster_world_boxes.push_back(quantize_outward(still, whole));
   }
-  for (const Cluster& cluster : model.clusters) {
+  for (std::size_t c = 0; c < model.clusters.size(); ++c) {
+    const Cluster& cluster = model.clusters[c];
     for (std::uint32_t i = 0; i < cluster.triangle_count; ++i) {
       Aabb box;
       for (const std::uint32_t v : model.triangles[cluster.first_triangle + i].v) {
         box.extend(model.poses.key_positions[v]);
       }
-      model.fuzzy_boxes.push_back(box);
+      model.fuzzy_boxes.push_back(quantize_outward(box, model.fuzzy_trees[c].local_box));
     }
   }
-  const std::vector<Aabb> first_segment = model.fuzzy_boxes;
+  const std::vector<QuantizedBox> first_segment = model.fuzzy_boxes;
   model.fuzzy_boxes.insert(model.fuzzy_boxes.end(), first_segment.begin(), first_segment.end());
 }
 

@@ -45,7 +45,7 @@ std::size_t escapes(const PosedMesh& mesh) {
     const Cluster& cluster = model.clusters[c];
     for (std::uint32_t t = cluster.first_triangle;
          t < cluster.first_triangle + cluster.triangle_count; ++t) {
-      const Aabb& box = model.segment_boxes(segment)[t];
+      const Aabb box = model.fuzzy_box(segment, c, t);
       for (const std::uint32_t v : model.triangles[t].v) {
         const Vec3f& p = mesh.positions()[v];
         outside += !world.contains(p);

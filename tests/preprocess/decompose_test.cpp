@@ -33,6 +33,7 @@ void expect_sound(const ModelStorage& m, const PoseSequence& source) {
   ASSERT_EQ(m.fuzzy_trees.size(), segments * clusters);
   ASSERT_EQ(m.source_triangles.size(), triangles);
   ASSERT_EQ(m.local_from_world.size(), clusters * source.key_count());
+  ASSERT_EQ(m.key_boxes.size(), source.key_count());
   ASSERT_EQ(m.cluster_world_boxes.size(), clusters * source.key_count());
   std::vector<bool> seen(triangles, false);
   for (std::size_t t = 0; t < triangles; ++t) {
@@ -43,10 +44,6 @@ void expect_sound(const ModelStorage& m, const PoseSequence& source) {
       EXPECT_EQ(m.poses.key_positions[m.triangles[t].v[corner]],
                 source.positions[source.triangles[m.source_triangles[t]].v[corner]]);
   }
-  for (const Aabb& box : m.fuzzy_boxes) {
-    EXPECT_FALSE(box.empty());
-    EXPECT_TRUE(finite(box.lo) && finite(box.hi));
-  }
   std::uint32_t next = 0;
   for (std::size_t c = 0; c < clusters; ++c) {
     const Cluster& cluster = m.clusters[c];
@@ -55,9 +52,14 @@ void expect_sound(const ModelStorage& m, const PoseSequence& source) {
     next += cluster.triangle_count;
     for (std::uint32_t t = cluster.first_triangle + 1; t < next; ++t)
       EXPECT_LT(m.source_triangles[t - 1], m.source_triangles[t]);
-    for (std::size_t s = 0; s < segments; ++s)
+    for (std::uint32_t s = 0; s < segments; ++s) {
       EXPECT_TRUE(is_well_formed(m.view().tree_view(m.fuzzy_trees[s * clusters + c]),
                                  cluster.first_triangle, next));
+      for (const Aabb& box : m.view().cluster_fuzzy_boxes(s, c)) {
+        EXPECT_FALSE(box.empty());
+        EXPECT_TRUE(finite(box.lo) && finite(box.hi));
+      }
+    }
   }
   EXPECT_EQ(next, triangles);
   for (const Affine3f& map : m.local_from_world) {

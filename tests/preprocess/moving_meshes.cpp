@@ -138,6 +138,7 @@ std::vector<unsigned char> model_bytes(const ModelStorage& model) {
   append(bytes, model.source_triangles);
   append(bytes, model.clusters);
   append(bytes, model.local_from_world);
+  append(bytes, model.key_boxes);
   append(bytes, model.cluster_world_boxes);
   append(bytes, model.segments);
   append(bytes, model.fuzzy_trees);
@@ -145,6 +146,13 @@ std::vector<unsigned char> model_bytes(const ModelStorage& model) {
   append(bytes, model.kd_nodes);
   append(bytes, model.kd_refs);
   return bytes;
+}
+
+std::vector<Aabb> first_fuzzy_boxes(const ModelStorage& model) {
+  std::vector<Aabb> boxes;
+  for (std::size_t c = 0; c < model.clusters.size(); ++c)
+    for (const Aabb& box : model.view().cluster_fuzzy_boxes(0, c)) boxes.push_back(box);
+  return boxes;
 }
 
 }  // namespace mdk

@@ -46,4 +46,7 @@ PoseSequence wild_motion(std::uint32_t seed, std::uint32_t keys);
 /// Every byte of the model that a file would hold, for comparing two models.
 std::vector<unsigned char> model_bytes(const ModelStorage& model);
 
+/// Fuzzy boxes of a model's first segment, in triangle order.
+std::vector<Aabb> first_fuzzy_boxes(const ModelStorage& model);
+
 }  // namespace mdk

@@ -78,7 +78,7 @@ TEST(QuantizedPoses, BoxesHoldWhatIsDecoded) {
       for (std::uint32_t t = model.clusters[c].first_triangle;
            t < model.clusters[c].first_triangle + model.clusters[c].triangle_count; ++t)
         for (const std::uint32_t v : model.triangles[t].v)
-          EXPECT_TRUE(model.key_world_boxes(key)[c].contains(mesh.positions()[v]));
+          EXPECT_TRUE(model.world_box(key, c).contains(mesh.positions()[v]));
   }
 }
 

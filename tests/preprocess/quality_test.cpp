@@ -10,6 +10,7 @@
 #include "preprocess/cost.h"
 #include "preprocess/fuzzy_boxes.h"
 #include "preprocess/pipeline.h"
+#include "tests/preprocess/moving_meshes.h"
 #include "tests/preprocess/sample_sequences.h"
 
 namespace mdk {
@@ -73,7 +74,7 @@ TEST_P(RealMotion, IsDecomposedBetterThanByAPlainImplementation) {
   const double at_keys = median_area_ratio(result.model, boxes_over_keys_only(result.model));
   std::printf("%s: residual %.5f, W %.2f at keys, %.2f at all times, %.1f s\n", GetParam().name,
               result.stats.residual_rms, at_keys,
-              median_area_ratio(result.model, result.model.fuzzy_boxes),
+              median_area_ratio(result.model, first_fuzzy_boxes(result.model)),
               result.stats.decompose_seconds + result.stats.build_seconds);
   // So few clusters leave the horse a little looser than the plain ones, by default it is tighter.
   const double share = GetParam().name == std::string("horse_gallop") ? 1.1 : 1.0;
@@ -87,7 +88,7 @@ TEST_P(RealMotion, ByDefaultLeavesHalfTheAreaOfAPlainImplementationOrLess) {
   options.segments = 1;
   SilentProgress progress;
   const DecomposeResult result = decompose(std::move(*sequence), options, progress);
-  const double area = median_area_ratio(result.model, result.model.fuzzy_boxes);
+  const double area = median_area_ratio(result.model, first_fuzzy_boxes(result.model));
   std::printf("%s: %zu clusters, W %.2f at all times, cost %.2f\n", GetParam().name,
               result.model.clusters.size(), area, result.stats.sah_cost);
   // The horse is nearly as good as can be with 20 clusters: its present triangles' boxes have 3.0.

@@ -58,7 +58,7 @@ std::size_t escapes(const Model& model, const KeyInterval& at) {
       for (std::uint32_t t = cluster.first_triangle;
            t < cluster.first_triangle + cluster.triangle_count; ++t)
         for (const std::uint32_t v : model.triangles[t].v) {
-          const Aabb& box = model.segment_boxes(s)[t];
+          const Aabb box = model.fuzzy_box(s, c, t);
           outside += !Aabbd{to_double(box.lo), to_double(box.hi)}.contains(
               map.point(to_double(mesh.positions()[v])));
         }

@@ -53,8 +53,9 @@ void draw_curve(const Theme& theme, const ResidualCurve& curve, double seconds, 
 
 void draw_facts(const ViewState& state, const PickedTriangle& picked, double residual) {
   const Model& model = *state.model();
-  const Aabb& box = model.segment_boxes(
-      segment_of(model, state.last_frame ? state.last_frame->moment : Moment{}))[picked.triangle];
+  const std::uint32_t segment =
+      segment_of(model, state.last_frame ? state.last_frame->moment : Moment{});
+  const Aabb box = model.fuzzy_box(segment, picked.cluster, picked.triangle);
   fact("Triangle", grouped(picked.triangle));
   fact("Its number in the input", grouped(model.source_triangles[picked.triangle]));
   fact("Cluster", grouped(picked.cluster));

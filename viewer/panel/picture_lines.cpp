@@ -138,8 +138,9 @@ void draw_pick(const Scene& scene, const ViewState& state, const Moment& moment,
   if (!map) return;
   if (state.overlays.local_basis) draw_basis(scene.trees[picked.cluster].local_box, *map, lines);
   if (state.overlays.fuzzy_box) {
-    const auto boxes = scene.model.segment_boxes(segment_of(scene.model, moment));
-    lines.box(boxes[picked.triangle], *map, {IM_COL32(255, 214, 92, 255), 1.8f, kEdge});
+    const std::uint32_t segment = segment_of(scene.model, moment);
+    lines.box(scene.model.fuzzy_box(segment, picked.cluster, picked.triangle), *map,
+              {IM_COL32(255, 214, 92, 255), 1.8f, kEdge});
   }
 }
 

@@ -25,7 +25,7 @@ class PartialModel {
  private:
   Model model_;
   std::vector<Triangle> triangles_;
-  std::vector<Aabb> world_boxes_;
+  std::vector<QuantizedBox> world_boxes_;
 };
 
 }  // namespace mdk
