@@ -4,7 +4,9 @@
 
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <random>
+#include <utility>
 #include <vector>
 
 namespace mdk {
@@ -46,7 +48,8 @@ TEST(QuantizedBox, HoldsTheBoxItIsMadeOfAndStaysInItsFrame) {
     for (int i = 0; i < 3000; ++i) {
       Aabb box;
       for (int corner = 0; corner < 2; ++corner)
-        box.extend({between(lo, hi, random), between(lo, hi, random), between(lo, hi, random)});
+        box.extend(
+            Vec3f{between(lo, hi, random), between(lo, hi, random), between(lo, hi, random)});
       const Aabb held = dequantize(quantize_outward(box, frame), frame);
       ASSERT_TRUE(held.contains(box)) << lo << " to " << hi << ", try " << i;
       ASSERT_TRUE(frame.contains(held)) << lo << " to " << hi << ", try " << i;
@@ -68,7 +71,7 @@ TEST(QuantizedBox, EachSideMovesByLessThanTwoPlaces) {
   for (int i = 0; i < 3000; ++i) {
     Aabb box;
     for (int corner = 0; corner < 2; ++corner)
-      box.extend({between(-3, 5, random), between(0, 1, random), between(10, 10.5f, random)});
+      box.extend(Vec3f{between(-3, 5, random), between(0, 1, random), between(10, 10.5f, random)});
     const Aabb held = dequantize(quantize_outward(box, frame), frame);
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const float two_places = 2 * frame.extent()[axis] / 65535;

@@ -162,10 +162,10 @@ TEST_F(MdkFileTest, WriterReturnsTheSizeOfTheFile) {
 
 TEST_F(MdkFileTest, HeaderIsAsSpecified) {
   const Bytes bytes = sample_bytes();
-  const Bytes magic = {0x89, 'M', 'D', 'K', 0x0d, 0x0a, 0x1a, 0x0a, 4, 3, 2, 1, 2, 0, 1, 0};
+  const Bytes magic = {0x89, 'M', 'D', 'K', 0x0d, 0x0a, 0x1a, 0x0a, 4, 3, 2, 1, 3, 0, 0, 0};
   EXPECT_EQ(Bytes(bytes.begin(), bytes.begin() + 16), magic);
   EXPECT_EQ(get<std::uint64_t>(bytes, 16), bytes.size());
-  EXPECT_EQ(get<std::uint32_t>(bytes, 24), 37u);
+  EXPECT_EQ(get<std::uint32_t>(bytes, 24), 38u);
   EXPECT_THAT(Bytes(bytes.begin() + 28, bytes.begin() + 56), testing::Each(0));
   Bytes resealed = bytes;
   seal(resealed);
@@ -229,11 +229,17 @@ TEST_F(MdkFileTest, RecordsAreAsSpecified) {
   EXPECT_EQ(get<float>(bytes, key1 + 4), 0.5f) << "cluster 0 rises";
   const std::size_t map = find_section(bytes, "MAPS").offset + 48 * 2;
   EXPECT_EQ(get<float>(bytes, map + 4 * 7), -0.5f) << "row 1, column 3 of key 1, cluster 0";
+  const std::size_t key_box = find_section(bytes, "KBOX").offset + 24;
+  EXPECT_EQ(get<float>(bytes, key_box + 4), 0.5f) << "lo.y of key 1";
+  EXPECT_EQ(get<float>(bytes, key_box + 16), 5.0f) << "hi.y of key 1";
+  const std::size_t world_box = find_section(bytes, "WBOX").offset + 12 * 2;
+  EXPECT_EQ(get<std::uint16_t>(bytes, world_box + 2), 0u) << "lo.y of key 1, cluster 0";
+  EXPECT_EQ(get<std::uint16_t>(bytes, world_box + 8), 14564u) << "hi.y: 1 of 4.5, rounded up";
 }
 
 TEST_F(MdkFileTest, ListsItsSectionsByName) {
   const auto sections = MdkFile(written(sample_model())).sections();
-  ASSERT_EQ(sections.size(), 37u);
+  ASSERT_EQ(sections.size(), 38u);
   EXPECT_EQ(sections.front().name, "model");
   EXPECT_EQ(sections.front().bytes, 64u);
   EXPECT_EQ(sections.back().name, "key_positions");
@@ -362,12 +368,12 @@ TEST_F(MdkFileTest, RefusesWhatIsNoMdkFile) {
 TEST_F(MdkFileTest, RefusesOtherVersionsAndByteOrders) {
   const Bytes bytes = sample_bytes();
   Bytes newer = bytes;
-  put(newer, 12, std::uint16_t{3});
+  put(newer, 12, std::uint16_t{4});
   put(newer, 14, std::uint16_t{4});
-  expect_refused(newer, "has file format 3.4, this program reads 2.0");
+  expect_refused(newer, "has file format 4.4, this program reads 3.0");
   Bytes older = bytes;
-  put(older, 12, std::uint16_t{1});
-  expect_refused(older, "has file format 1.1, this program reads 2.0");
+  put(older, 12, std::uint16_t{2});
+  expect_refused(older, "has file format 2.0, this program reads 3.0");
   Bytes swapped = bytes;
   put(swapped, 8, std::uint32_t{0x04030201});
   expect_refused(swapped, "has an unknown byte order");
