@@ -8,12 +8,13 @@ BoxColumns::BoxColumns(const Model& model)
       columns_(6 * stride_ * model.key_count()) {
   for (std::uint32_t key = 0; key < model.key_count(); ++key) {
     float* const columns = &columns_[6 * stride_ * key];
-    const std::span<const Aabb> boxes = model.key_world_boxes(key);
-    for (std::size_t c = 0; c < boxes.size(); ++c)
+    for (std::size_t c = 0; c < clusters_; ++c) {
+      const Aabb box = model.world_box(key, c);
       for (std::size_t axis = 0; axis < 3; ++axis) {
-        columns[2 * axis * stride_ + c] = boxes[c].lo[axis];
-        columns[(2 * axis + 1) * stride_ + c] = boxes[c].hi[axis];
+        columns[2 * axis * stride_ + c] = box.lo[axis];
+        columns[(2 * axis + 1) * stride_ + c] = box.hi[axis];
       }
+    }
   }
 }
 

@@ -29,9 +29,13 @@ ModelStorage moving_clusters(std::size_t count, std::uint64_t seed) {
   storage.clusters.resize(count);
   storage.key_times = {0, 1};
   storage.clips = {{"move", 0, 2}};
-  for (const std::uint64_t key : {0, 1})
-    for (const Aabb& box : test::scattered_boxes(count, kSide, 3, 2 * seed + key))
-      storage.cluster_world_boxes.push_back(box);
+  for (const std::uint64_t key : {0, 1}) {
+    const std::vector<Aabb> boxes = test::scattered_boxes(count, kSide, 3, 2 * seed + key);
+    Aabb& whole = storage.key_boxes.emplace_back();
+    for (const Aabb& box : boxes) whole.extend(box);
+    for (const Aabb& box : boxes)
+      storage.cluster_world_boxes.push_back(quantize_outward(box, whole));
+  }
   return storage;
 }
 
