@@ -61,7 +61,8 @@ std::vector<mdk::QueryRay> random_lines(const mdk::Aabb& box, std::mt19937_64& e
 /// Clusters whose world boxes a line is expected to meet that meets the model's box.
 double clusters_met(const mdk::Model& model, std::uint32_t key, const mdk::Aabb& box) {
   double area = 0;
-  for (const mdk::Aabb& b : model.key_world_boxes(key)) area += b.surface_area();
+  for (std::size_t c = 0; c < model.cluster_count(); ++c)
+    area += model.world_box(key, c).surface_area();
   return area / box.surface_area();
 }
 
