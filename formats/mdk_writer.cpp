@@ -90,10 +90,33 @@ std::uint64_t place(std::vector<Section>& sections) {
   return layout::align_up(end);
 }
 
-void pad(AtomicFile& file, std::uint64_t written, std::uint64_t until) {
-  constexpr std::array<std::byte, layout::kAlignment> kZeros{};
-  file.write(std::span(kZeros).first(until - written));
-}
+/// Writes in pieces; progress hears of each before it is written.
+class PieceWriter {
+ public:
+  PieceWriter(AtomicFile& file, std::uint64_t whole_bytes, ProgressSink& progress)
+      : file_(file), whole_bytes_(whole_bytes), progress_(progress) {}
+
+  void write(std::span<const std::byte> bytes) {
+    constexpr std::size_t kPiece = std::size_t{16} << 20;
+    while (!bytes.empty()) {
+      progress_.report("write", static_cast<double>(written_) / static_cast<double>(whole_bytes_));
+      const std::size_t piece = std::min(bytes.size(), kPiece);
+      file_.write(bytes.first(piece));
+      written_ += piece;
+      bytes = bytes.subspan(piece);
+    }
+  }
+  void pad(std::uint64_t until) {
+    constexpr std::array<std::byte, layout::kAlignment> kZeros{};
+    write(std::span(kZeros).first(until - written_));
+  }
+
+ private:
+  AtomicFile& file_;
+  std::uint64_t whole_bytes_;
+  ProgressSink& progress_;
+  std::uint64_t written_ = 0;
+};
 
 }  // namespace
 
@@ -115,16 +138,16 @@ std::uint64_t write_mdk(const Model& model, const std::string& path,
   for (const Section& section : sections) table.push_back(section.entry);
   header.checksum = table_checksum(header, table);
 
+  SilentProgress silent;
   AtomicFile file(path, options.overwrite);
-  file.write(std::as_bytes(std::span(&header, 1)));
-  file.write(std::as_bytes(std::span(table)));
-  std::uint64_t written = sizeof(header) + table.size() * sizeof(SectionEntry);
+  PieceWriter writer(file, header.file_bytes, options.progress ? *options.progress : silent);
+  writer.write(std::as_bytes(std::span(&header, 1)));
+  writer.write(std::as_bytes(std::span(table)));
   for (const Section& section : sections) {
-    pad(file, written, section.entry.offset);
-    file.write(section.content);
-    written = section.entry.offset + section.content.size();
+    writer.pad(section.entry.offset);
+    writer.write(section.content);
   }
-  pad(file, written, header.file_bytes);
+  writer.pad(header.file_bytes);
   file.commit();
   return header.file_bytes;
 }

@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "common/base/progress.h"
 #include "common/motion/model.h"
 #include "formats/atomic_file.h"
 #include "formats/mdk_origin.h"
@@ -12,6 +13,7 @@ namespace mdk {
 struct MdkWriteOptions {
   MdkOrigin origin;
   Overwrite overwrite = Overwrite::kAlways;
+  ProgressSink* progress = nullptr;  ///< hears of stage "write", where given
 };
 
 /// Writes the whole file or nothing: a temporary name in the same folder, fsync, rename. The bytes

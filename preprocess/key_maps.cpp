@@ -113,8 +113,9 @@ KeyMaps fit_small_boxes(const PoseSequence& sequence, const ClusterMembers& memb
   };
   // A batch at a time, so that whoever listens hears of progress between them.
   constexpr std::size_t kClustersPerBatch = 8;
+  constexpr double kFitted = 0.8;  // share of the work; boxes at all times and residuals come after
   for (std::size_t first = 0; first < clusters; first += kClustersPerBatch) {
-    report(0.7 * static_cast<double>(first) / static_cast<double>(clusters));
+    report(kFitted * members.vertex_begin[first] / members.vertex_begin[clusters]);
     parallel_chunks(
         std::min(kClustersPerBatch, clusters - first), 1, [&](std::size_t i, std::size_t) {
           const std::size_t c = first + i;
@@ -130,7 +131,7 @@ KeyMaps fit_small_boxes(const PoseSequence& sequence, const ClusterMembers& memb
           store(c, from_table(points, better), refined);
         });
   }
-  report(0.7);
+  report(kFitted);
   if (request.refine) accept_better(sequence, members, refined, measure.model_areas, plain);
   plain.residual = residual_stats(sequence, members, plain.local_from_world, request.rest_key);
   return plain;

@@ -83,8 +83,7 @@ AreaWeights tree_weights(const AreaWeights& w) {
 }
 
 /// Into the trees whose local boxes are there. `work`: S * K, segment-major.
-void build_fuzzy_trees(ModelStorage& model, std::span<const ClusterWork> work,
-                       ProgressSink& progress) {
+void build_fuzzy_trees(ModelStorage& model, std::span<const ClusterWork> work) {
   const std::size_t clusters = model.clusters.size();
   const Model view = model.view();
   std::vector<KdTree> trees(work.size());
@@ -96,7 +95,6 @@ void build_fuzzy_trees(ModelStorage& model, std::span<const ClusterWork> work,
         view.cluster_fuzzy_boxes(static_cast<std::uint32_t>(i / clusters), i % clusters),
         model.clusters[i % clusters].first_triangle, config);
   });
-  progress.report("build", 0.9);
   constexpr std::size_t kMostLinks = std::numeric_limits<std::uint32_t>::max();
   for (std::size_t i = 0; i < trees.size(); ++i) {
     const KdTree& tree = trees[i];
@@ -166,12 +164,15 @@ AssembledModel assemble_model(PoseSequence sequence, const ClusterMembers& membe
     for (std::size_t t = 0; t < parts.pose_space_boxes.size(); ++t)
       boxes[t].extend(parts.pose_space_boxes[t]);
     append_fuzzy_boxes(boxes, model);
+    progress.report("build",
+                    parts.boxes_until * static_cast<double>(model.fuzzy_trees.size()) /
+                        static_cast<double>((model.segments.size() + 1) * model.clusters.size()));
   }
   set_world_boxes(cluster_world_boxes(sequence, members), model);
   model.local_from_world = std::move(parts.local_from_world);
   model.vertex_count = sequence.vertex_count;
   model.triangles = std::move(sequence.triangles);
-  progress.report("build", 0.4);
+  progress.report("build", parts.boxes_until);
 
   const std::vector<double> model_areas = pose_box_areas(sequence);
   const AreaWeightTable weights(model.local_from_world, model_areas, {});
@@ -181,7 +182,7 @@ AssembledModel assemble_model(PoseSequence sequence, const ClusterMembers& membe
     for (std::size_t c = 0; c < model.clusters.size(); ++c)
       work.push_back(cluster_work(view, s, c, weights, model_areas));
   result.expected_work = mean_work(model.segments, work);
-  build_fuzzy_trees(model, work, progress);
+  build_fuzzy_trees(model, work);
 
   model.source_triangles = members.triangles;
   permute(model.triangles, model.source_triangles, 1);

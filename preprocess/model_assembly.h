@@ -18,9 +18,11 @@ struct ModelParts {
   std::vector<Segment> segments;
   std::uint32_t rest_key = 0;
 
-  std::vector<ClusterBone> cluster_bones;  ///< K where a pose space is bounded, else none
-  std::vector<Aabb> pose_space_boxes;      ///< T then, in the order of the clusters' triangles
+  std::vector<ClusterBone> cluster_bones;   ///< K where a pose space is bounded, else none
+  std::vector<Aabb> pose_space_boxes;       ///< T then, in the order of the clusters' triangles
   std::optional<QuantizedPoses> quantized;  ///< what the sequence's positions were decoded from
+
+  double boxes_until = 0.4;  ///< share of the assembly after which trees are built, for progress
 };
 
 struct AssembledModel {

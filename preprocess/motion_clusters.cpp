@@ -88,7 +88,7 @@ BoxClustering with_best_rest_row(BoxProblem& problem, BoxClustering clustering) 
 }
 
 /// Where growth is on its way, as a share that only rises.
-double growth_share(std::uint32_t clusters) { return 0.05 + 0.85 * clusters / (clusters + 40.0); }
+double growth_share(std::uint32_t clusters) { return 0.05 + 0.95 * clusters / (clusters + 40.0); }
 
 /// Clusters as they come from few keys and, of a large mesh, few triangles.
 struct RoughClusters {

@@ -21,13 +21,12 @@
 #include "preprocess/pose_space.h"
 #include "preprocess/pose_table.h"
 #include "preprocess/segments.h"
+#include "preprocess/stage_shares.h"
 
 namespace mdk {
 namespace {
 
 constexpr std::uint32_t kMaxClusters = 1024;
-constexpr double kDecomposedAt = 0.85;  // share of the whole job, for progress alone
-constexpr double kClusteredAt = 0.8, kMappedAt = 0.95;  // shares of the decomposition
 constexpr std::size_t kBoneEntries = 2'000'000;  // keys (times vertices) that bones are chosen on
 constexpr std::size_t kMinBoneKeys = 10, kMaxBoneKeys = 200;
 constexpr float kLargestCoordinate = 1e15f;  // areas and volumes must stay far inside float
@@ -188,19 +187,20 @@ Decomposition with_maps(const PoseSequence& sequence, MotionClusters clusters,
   result.maps =
       options.stop_percent && !options.refine
           ? fit_key_maps(sequence, result.members, request, result.clusters.local_from_rest)
-          : fit_small_boxes(sequence, result.members, request, [&](double share) {
-              progress.report("decompose", kClusteredAt + (kMappedAt - kClusteredAt) * share);
-            });
+          : fit_small_boxes(sequence, result.members, request,
+                            [&](double share) { progress.report("decompose", share); });
   return result;
 }
 
 Decomposition decide_motion(const PoseSequence& sequence, const DecomposeOptions& options,
                             double unit, ProgressSink& progress) {
-  if (options.stop_percent)
-    return with_maps(sequence, cluster_by_residuals(sequence, options, unit, progress), options,
-                     progress);
-  return with_maps(sequence, cluster_by_boxes(sequence, options, unit, progress), options,
-                   progress);
+  const StageEnds ends = predict_stage_ends(sequence, options);
+  ProgressPart clustering(progress, 0, ends.clustered),
+      mapping(progress, ends.clustered, ends.mapped);
+  MotionClusters clusters = options.stop_percent
+                                ? cluster_by_residuals(sequence, options, unit, clustering)
+                                : cluster_by_boxes(sequence, options, unit, clustering);
+  return with_maps(sequence, std::move(clusters), options, mapping);
 }
 
 Decomposition decide(const PoseSequence& sequence, const DecomposeOptions& options, double unit,
@@ -240,22 +240,22 @@ DecomposeResult decompose(PoseSequence sequence, const DecomposeOptions& options
                           ProgressSink& progress) {
   check_input(sequence, options);
   Stopwatch watch;
-  ProgressPart decomposing(progress, 0, kDecomposedAt);
-  decomposing.report("decompose", 0);
+  const StageEnds ends = predict_stage_ends(sequence, options);
+  progress.report("decompose", 0);
   const double unit = pose_unit(sequence);
   if (options.sampling == PoseSampling::kPoseSpace) {
     set_limits(*sequence.skeleton, options.joint_limit_degrees);
   } else {
     sequence.skeleton.reset();
   }
-  Decomposition decided = decide(sequence, options, unit, decomposing);
+  Decomposition decided = decide(sequence, options, unit, progress);
   select_vertices(sequence, cluster_order(decided.members, sequence.vertex_count));
   decided.members = members_of(sequence, decided.clusters);
   ModelParts parts;
   if (options.quantize) parts.quantized = quantized(sequence, decided, *options.quantize, unit);
   parts.local_from_world = std::move(decided.maps.local_from_world);
   parts.rest_key = decided.clusters.rest_key;
-  decomposing.report("decompose", kMappedAt);
+  progress.report("decompose", ends.mapped);
   if (sequence.skeleton) {
     parts.segments = {{0, sequence.key_count() - 1}};  // a pose space has no time
     parts.cluster_bones = decided.cluster_bones;
@@ -265,10 +265,11 @@ DecomposeResult decompose(PoseSequence sequence, const DecomposeOptions& options
     parts.segments = choose_segments(sequence, decided.members, parts.local_from_world,
                                      {.count = options.segments});
   }
-  decomposing.report("decompose", 1);
+  progress.report("decompose", ends.segmented);
   const double decompose_seconds = watch.lap();
 
-  ProgressPart building(progress, kDecomposedAt, 1);
+  ProgressPart building(progress, ends.segmented, 1);
+  parts.boxes_until = (ends.boxed - ends.segmented) / (1 - ends.segmented);
   AssembledModel assembled =
       assemble_model(std::move(sequence), decided.members, std::move(parts), building);
   DecomposeResult result;

@@ -26,8 +26,8 @@
 namespace mdk {
 namespace {
 
-/// Shares of the whole job, for progress alone.
-constexpr double kReadUntil = 0.1;
+/// Shares of the whole job, for progress alone: text has to be parsed, the other kinds are mapped.
+double read_until(SourceKind kind) { return kind == SourceKind::kMeshes ? 0.3 : 0.03; }
 constexpr double kDecomposeUntil = 0.97;
 
 struct BakeArguments {
@@ -183,7 +183,8 @@ void run_bake(const BakeArguments& arguments, CommandContext& context) {
 
   BakeOutcome outcome{joined_inputs(arguments), arguments.output, {}, {}, 0, 0, 0};
   Stopwatch total, stage;
-  ProgressPart reading(progress, 0, kReadUntil);
+  const double read_share = read_until(source_files.kind);
+  ProgressPart reading(progress, 0, read_share);
   SourceOptions reading_options = arguments.source;
   reading_options.skeleton = options.sampling == PoseSampling::kPoseSpace;
   ReadResult source = read_source(source_files, reading_options, reading);
@@ -192,18 +193,18 @@ void run_bake(const BakeArguments& arguments, CommandContext& context) {
   outcome.seconds.read = stage.lap();
   require_memory(arguments, source.sequence, limits.memory());
 
-  ProgressPart decomposing(progress, kReadUntil, kDecomposeUntil);
+  ProgressPart decomposing(progress, read_share, kDecomposeUntil);
   const DecomposeResult result = decompose(std::move(source.sequence), options, decomposing);
   outcome.seconds.decompose = result.stats.decompose_seconds;
   outcome.seconds.build = result.stats.build_seconds;
 
-  progress.report("write", kDecomposeUntil);
+  ProgressPart writing(progress, kDecomposeUntil, 1);
   stage.lap();
   const Model model = result.model.view();
   const MdkOrigin origin{
       tool_version(), context.options_hash,
       source.read_through.empty() ? SourceReader::kMdprep : SourceReader::kAssimp};
-  outcome.file_bytes = write_mdk(model, arguments.output, {origin, context.overwrite});
+  outcome.file_bytes = write_mdk(model, arguments.output, {origin, context.overwrite, &writing});
   outcome.seconds.write = stage.lap();
   outcome.seconds.total = total.seconds();
   outcome.peak_memory_bytes = peak_memory_bytes();

@@ -4,11 +4,15 @@
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <filesystem>
 #include <limits>
 #include <span>
+#include <stdexcept>
 #include <utility>
+#include <vector>
 
 #include "common/base/error.h"
 #include "formats/mdk_sections.h"
@@ -158,6 +162,39 @@ TEST_F(MdkFileTest, WriterReturnsTheSizeOfTheFile) {
   const std::uint64_t size = write_mdk(sample_model().view(), path_);
   EXPECT_EQ(size, read_bytes(path_).size());
   EXPECT_EQ(MdkFile(path_).file_bytes(), size);
+}
+
+/// Remembers what it hears; gives up at the nth report.
+struct Listener final : ProgressSink {
+  explicit Listener(std::size_t reports) : patience(reports) {}
+  void report(std::string_view stage, double fraction) override {
+    EXPECT_EQ(stage, "write");
+    heard.push_back(fraction);
+    if (heard.size() == patience) throw std::runtime_error("enough");
+  }
+  std::size_t patience;
+  std::vector<double> heard;
+};
+
+TEST_F(MdkFileTest, WritingTellsHowFarItIs) {
+  Listener listener(1000);
+  MdkWriteOptions options;
+  options.progress = &listener;
+  write_mdk(sample_model().view(), path_, options);
+  EXPECT_GT(listener.heard.size(), 30u);
+  EXPECT_EQ(listener.heard.front(), 0);
+  EXPECT_LT(listener.heard.back(), 1);
+  EXPECT_TRUE(std::ranges::is_sorted(listener.heard));
+}
+
+TEST_F(MdkFileTest, WritingThatIsStoppedLeavesNothing) {
+  for (const std::size_t patience : {1u, 20u}) {
+    Listener listener(patience);
+    MdkWriteOptions options;
+    options.progress = &listener;
+    EXPECT_THROW(write_mdk(sample_model().view(), path_, options), std::runtime_error);
+    EXPECT_TRUE(std::filesystem::is_empty(std::filesystem::path(path_).parent_path()));
+  }
 }
 
 TEST_F(MdkFileTest, HeaderIsAsSpecified) {
