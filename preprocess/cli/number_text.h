@@ -1,10 +1,13 @@
-// Numbers in and out of text: strict reading of option values, and figures as people read them.
+// Numbers in and out of text: strict reading of option values, and figures as people read them
+// (figure_text.h).
 #pragma once
 
 #include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "common/base/figure_text.h"
 
 namespace mdk {
 
@@ -27,16 +30,7 @@ std::uint64_t parse_size(std::string_view option, std::string_view text);
 /// The parts between separators, empty ones included.
 std::vector<std::string> split(std::string_view text, char separator);
 
-/// 12.345 with 1 decimal: "12.3".
-std::string fixed_text(double value, int decimals);
-
-/// 1234567: "1,234,567".
-std::string grouped_text(std::uint64_t value);
-
 /// Sixteen hexadecimal digits.
 std::string hash_text(std::uint64_t hash);
-
-/// 3250585: "3.1 MiB".
-std::string bytes_text(std::uint64_t bytes);
 
 }  // namespace mdk

@@ -48,16 +48,5 @@ TEST(NumberText, SplitKeepsEmptyParts) {
   EXPECT_EQ(split(",a,", ','), (std::vector<std::string>{"", "a", ""}));
 }
 
-TEST(NumberText, FiguresReadWell) {
-  EXPECT_EQ(fixed_text(12.345, 1), "12.3");
-  EXPECT_EQ(fixed_text(1e300, 0).size(), 301u);
-  EXPECT_EQ(grouped_text(0), "0");
-  EXPECT_EQ(grouped_text(999), "999");
-  EXPECT_EQ(grouped_text(1000), "1,000");
-  EXPECT_EQ(grouped_text(1234567), "1,234,567");
-  EXPECT_EQ(bytes_text(1023), "1023 B");
-  EXPECT_EQ(bytes_text(3250585), "3.1 MiB");
-}
-
 }  // namespace
 }  // namespace mdk

@@ -4,9 +4,9 @@
 #include <numeric>
 #include <string>
 
+#include "common/base/figure_text.h"
 #include "common/trace/color.h"
 #include "common/trace/shading.h"
-#include "viewer/panel/number_text.h"
 #include "viewer/panel/tabs.h"
 #include "viewer/panel/ui_parts.h"
 
@@ -106,7 +106,7 @@ void draw_row(std::uint32_t c, const ClusterFacts& facts, ViewState& state, UiRe
   ImGui::PushStyleColor(ImGuiCol_Text, shown ? text_color() : dim_color());
   ImGui::Text("%u", c);
   for (const std::string& text :
-       {grouped(facts.triangles), percent(facts.residual), percent(facts.cost_share)}) {
+       {grouped_text(facts.triangles), percent(facts.residual), percent(facts.cost_share)}) {
     ImGui::TableNextColumn();
     ImGui::TextUnformatted(text.c_str());
   }

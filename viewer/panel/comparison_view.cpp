@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <string>
 
+#include "common/base/figure_text.h"
 #include "common/trace/technique.h"
 #include "viewer/panel/number_text.h"
 #include "viewer/panel/ui_parts.h"
@@ -73,7 +74,7 @@ void draw_divider(const Rect& picture, const Theme& theme, CompareSettings& comp
 
 std::string difference_text(const PictureDifference& difference, const FrameReport& frame) {
   const std::uint64_t pixels = static_cast<std::uint64_t>(frame.width) * frame.height;
-  return grouped(difference.pixels) + " of " + grouped(pixels) + " pixels differ";
+  return grouped_text(difference.pixels) + " of " + grouped_text(pixels) + " pixels differ";
 }
 
 void draw_comparison(const Rect& picture, const Theme& theme, ViewState& state, UiResult& result) {

@@ -2,6 +2,7 @@
 #include <cstdio>
 #include <string>
 
+#include "common/base/figure_text.h"
 #include "common/trace/technique.h"
 #include "viewer/panel/number_text.h"
 #include "viewer/panel/tabs.h"
@@ -30,13 +31,13 @@ void draw_last_frame(const Theme& theme, const ViewState& state) {
       stats.rays > 0 ? 100.0 * static_cast<double>(stats.hits) / static_cast<double>(stats.rays)
                      : 0;
   std::array<char, 64> hits{};
-  std::snprintf(hits.data(), hits.size(), "%s  (%.0f %%)", grouped(stats.hits).c_str(),
+  std::snprintf(hits.data(), hits.size(), "%s  (%.0f %%)", grouped_text(stats.hits).c_str(),
                 hit_percent);
   fact("Technique", std::string(technique_table()[frame.technique].label));
   fact("Size", std::to_string(frame.width) + " x " + std::to_string(frame.height));
   fact("Rays traced", rate_text(per_second) + "/s");
   fact("Hits", hits.data());
-  if (stats.light_rays > 0) fact("Rays to lights and sky", grouped(stats.light_rays));
+  if (stats.light_rays > 0) fact("Rays to lights and sky", grouped_text(stats.light_rays));
   fact("Structures", bytes_text(frame.structure_bytes));
   fact("Built ahead of time", milliseconds_text(stats.prebuild_ms));
 }

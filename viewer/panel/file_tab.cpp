@@ -2,7 +2,7 @@
 #include <cstdio>
 #include <string>
 
-#include "viewer/panel/number_text.h"
+#include "common/base/figure_text.h"
 #include "viewer/panel/tabs.h"
 #include "viewer/panel/ui_parts.h"
 
@@ -18,15 +18,15 @@ void draw_facts(const Theme& theme, const ViewState& state) {
   }
   std::array<char, 32> seconds{};
   std::snprintf(seconds.data(), seconds.size(), "%.3g s", state.playback.seconds());
-  fact("Triangles", grouped(model->triangle_count()));
-  fact("Vertices", grouped(model->vertex_count));
-  fact("Clips", grouped(model->clips.size()));
-  fact("Keys", grouped(model->key_count()));
+  fact("Triangles", grouped_text(model->triangle_count()));
+  fact("Vertices", grouped_text(model->vertex_count));
+  fact("Clips", grouped_text(model->clips.size()));
+  fact("Keys", grouped_text(model->key_count()));
   fact("This clip", seconds.data());
-  fact("Clusters", grouped(model->cluster_count()));
-  fact("Time segments", grouped(model->segment_count()));
-  fact("Joints to pose", grouped(model->skeleton.joints.size()));
-  fact("Textures", grouped(model->textures.size()));
+  fact("Clusters", grouped_text(model->cluster_count()));
+  fact("Time segments", grouped_text(model->segment_count()));
+  fact("Joints to pose", grouped_text(model->skeleton.joints.size()));
+  fact("Textures", grouped_text(model->textures.size()));
   fact("Size", bytes_text(state.file->file_bytes()));
 }
 

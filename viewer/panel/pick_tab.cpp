@@ -3,7 +3,7 @@
 #include <cstdio>
 #include <string>
 
-#include "viewer/panel/number_text.h"
+#include "common/base/figure_text.h"
 #include "viewer/panel/tabs.h"
 #include "viewer/panel/ui_parts.h"
 
@@ -56,9 +56,9 @@ void draw_facts(const ViewState& state, const PickedTriangle& picked, double res
   const std::uint32_t segment =
       segment_of(model, state.last_frame ? state.last_frame->moment : Moment{});
   const Aabb box = model.fuzzy_box(segment, picked.cluster, picked.triangle);
-  fact("Triangle", grouped(picked.triangle));
-  fact("Its number in the input", grouped(model.source_triangles[picked.triangle]));
-  fact("Cluster", grouped(picked.cluster));
+  fact("Triangle", grouped_text(picked.triangle));
+  fact("Its number in the input", grouped_text(model.source_triangles[picked.triangle]));
+  fact("Cluster", grouped_text(picked.cluster));
   fact("Residual at the key before", percent(residual));
   const double unit = model.rest_diagonal > 0 ? model.rest_diagonal : 1;
   const Vec3f size = box.extent();
