@@ -24,6 +24,19 @@ Error no_window(const std::string& what) {
                               "; \"mdprep render\" makes pictures without a window"};
 }
 
+// EGL first: GLX has a thousand configurations to be asked for twenty attributes each, which takes
+// longer than all the rest of a start.
+GLFWwindow* create_window(const WindowSize& size) {
+  for (const int api : {GLFW_EGL_CONTEXT_API, GLFW_NATIVE_CONTEXT_API}) {
+    glfwWindowHint(GLFW_CONTEXT_CREATION_API, api);
+    if (GLFWwindow* const window =
+            glfwCreateWindow(static_cast<int>(size.width), static_cast<int>(size.height), "mdview",
+                             nullptr, nullptr))
+      return window;
+  }
+  return nullptr;
+}
+
 }  // namespace
 
 // GLFW hands everything to callbacks; they only note what came. ImGui's own callbacks are chained
@@ -56,8 +69,7 @@ Window::Window(const WindowSize& size, SizeUnit unit) : events_(std::make_unique
   glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
   glfwWindowHint(GLFW_OPENGL_FORWARD_COMPAT, GLFW_TRUE);
   glfwWindowHint(GLFW_SCALE_TO_MONITOR, unit == SizeUnit::kScaled ? GLFW_TRUE : GLFW_FALSE);
-  window_ = glfwCreateWindow(static_cast<int>(size.width), static_cast<int>(size.height), "mdview",
-                             nullptr, nullptr);
+  window_ = create_window(size);
   if (!window_) {
     const Error error = no_window("mdview cannot open a window with OpenGL 3.3");
     glfwTerminate();
