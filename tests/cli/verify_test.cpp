@@ -46,7 +46,7 @@ TEST_F(Verify, JsonHasCountsForEveryCheck) {
   EXPECT_EQ(report["hit_mismatches"], 0);
   EXPECT_EQ(report["ok"], true);
   EXPECT_EQ(std::ssize(report["checks"]),
-            2 + 6 + 2 + std::ranges::count_if(technique_table(), is_judged));
+            2 + 5 + 2 + std::ranges::count_if(technique_table(), is_judged));
   for (const Json& check : report["checks"]) {
     EXPECT_GT(check["count"], 0) << check;
     EXPECT_EQ(check["failures"], 0) << check;
