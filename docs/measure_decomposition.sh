@@ -44,12 +44,8 @@ source_of() {
 }
 real_source() { if [[ -f $1.obj && -f $1.pc2 ]]; then echo "$1.obj $1.pc2"; fi; }
 
-# Options that this mdprep has.
-has_option() { "$mdprep" bake --help | grep -q -- "$1"; }
-one_segment=()
-if has_option --segments; then one_segment=(--segments 1); fi
-paper=(--decompose motion --stop 1 "${one_segment[@]}")
-if has_option --refine; then paper+=(--refine off); fi
+one_segment=(--segments 1)
+paper=(--decompose motion --stop 1 --refine off "${one_segment[@]}")
 
 # bake_and_trace MODEL KIND OPTIONS…: figures to $work/MODEL.KIND.*
 bake_and_trace() {
@@ -76,7 +72,7 @@ bake_and_trace() {
 
 # Clusters at the rest pose and at two other keys, and the residual where this mdprep shows it.
 take_pictures() {
-  local file=$work/$1.ours keys rest shading=clusters
+  local file=$work/$1.ours keys rest
   keys=$(jq .bake.keys "$file.json")
   rest=$(jq .bake.rest_key "$file.json")
   render() {
@@ -86,8 +82,7 @@ take_pictures() {
   render "$1-rest" "$rest" clusters
   render "$1-third" $((keys / 3)) clusters
   render "$1-late" $((keys * 5 / 8)) clusters
-  if "$mdprep" render --help | grep -A4 -- --shading | grep -q residual; then shading=residual; fi
-  render "$1-last" $((keys * 5 / 8)) "$([[ $shading == residual ]] && echo residual || echo diffuse)"
+  render "$1-last" $((keys * 5 / 8)) residual
 }
 
 all=(hand ben chicken cow dolphin cloth ball real-cow real-crane real-elephant real-horse)
@@ -101,7 +96,7 @@ for name in "$@"; do
   fi
   bake_and_trace "$name" paper "${paper[@]}"
   bake_and_trace "$name" ours "${one_segment[@]}"
-  if ((${#one_segment[@]})); then bake_and_trace "$name" auto; else cp "$work/$name.ours.json" "$work/$name.auto.json"; fi
+  bake_and_trace "$name" auto
   take_pictures "$name"
 done
 measured=()
@@ -196,7 +191,7 @@ Written by \`docs/measure_decomposition.sh\`; do not edit. Commit $(git rev-pars
 $(nproc) cores, ${cpu:-unknown processor}.
 
 - *paper*: \`${paper[*]}\`, the method of GFW06.
-- *ours*: the defaults, with one time segment${one_segment:+ (\`${one_segment[*]}\`)}; *auto*: the defaults as they are.
+- *ours*: the defaults, with one time segment (\`${one_segment[*]}\`); *auto*: the defaults as they are.
 - *cost*: expected work of a ray that meets the model ([method.md](../method.md)).
 - *W*: area in the world of all fuzzy boxes, in areas of the mesh's box, median over keys; *tight*: the same for
   the boxes of the present triangles, the floor.
@@ -245,10 +240,10 @@ Residual and cost, each in shares of those of one cluster; after GFW06 Figure 7.
 
 ## Clusters
 
-At the rest pose, at a third and at five eighths of the keys, and the same moment $last_picture; after GFW06
+At the rest pose, at a third and at five eighths of the keys, and the same moment by residual; after GFW06
 Figures 5 and 6.
 
-| model | rest | a third | five eighths | $last_picture |
+| model | rest | a third | five eighths | by residual |
 |---|---|---|---|---|
 $(for name in "${measured[@]}"; do
     printf '| %s | ![](images/%s-rest.png) | ![](images/%s-third.png) | ![](images/%s-late.png) | ![](images/%s-last.png) |\n' \
@@ -257,8 +252,6 @@ $(for name in "${measured[@]}"; do
 PAGE
 }
 
-last_picture='as it looks'
-if "$mdprep" render --help | grep -A4 -- --shading | grep -q residual; then last_picture='by residual'; fi
 growth_plot
 write_page >"$results/decomposition.md"
 printf 'wrote %s\n' "$results/decomposition.md" >&2
