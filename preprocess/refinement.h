@@ -23,7 +23,7 @@ namespace mdk {
 
 struct RefineOptions {
   int restarts = 2;     ///< each moves the middles to where the boxes are now
-  int iterations = 15;  ///< of L-BFGS, each about one evaluation
+  int iterations = 10;  ///< of L-BFGS, each about one evaluation
 };
 
 /// `maps`: R, from centred row coordinates into the local basis; `model_areas`: R. Returns maps
