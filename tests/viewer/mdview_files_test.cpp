@@ -6,6 +6,7 @@
 
 #include "formats/mdk_writer.h"
 #include "tests/viewer/mdview_gui.h"
+#include "tests/viewer/obj_sources.h"
 #include "tests/viewer/waving_bar.h"
 #include "tests/viewer/x_clipboard.h"
 #include "tests/viewer/x_drop.h"
@@ -16,8 +17,6 @@ namespace {
 using nlohmann::json;
 using testing::HasSubstr;
 
-constexpr const char* kSquare = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n";
-
 /// One triangle: three corners of a unit square, as glTF with its buffer inside.
 constexpr const char* kTriangle = R"({"asset": {"version": "2.0"},
   "buffers": [{"byteLength": 36, "uri": "data:application/octet-stream;base64,)"
@@ -27,22 +26,6 @@ constexpr const char* kTriangle = R"({"asset": {"version": "2.0"},
                  "min": [0, 0, 0], "max": [1, 1, 0]}],
   "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
   "nodes": [{"mesh": 0}], "scenes": [{"nodes": [0]}], "scene": 0})";
-
-/// A sheet of side * side squares: many seconds of work for a baker.
-std::string large_obj(int side) {
-  std::string text;
-  for (int y = 0; y <= side; ++y)
-    for (int x = 0; x <= side; ++x)
-      text += "v " + std::to_string(x) + " " + std::to_string(y) + " " +
-              std::to_string((x * y) % 7) + "\n";
-  for (int y = 0; y < side; ++y)
-    for (int x = 0; x < side; ++x) {
-      const int a = y * (side + 1) + x + 1;
-      text += "f " + std::to_string(a) + " " + std::to_string(a + 1) + " " +
-              std::to_string(a + side + 2) + " " + std::to_string(a + side + 1) + "\n";
-    }
-  return text;
-}
 
 TEST_F(MdviewGui, ADroppedGltfIsBakedAndOpened) {
   write_text("triangle.gltf", kTriangle);

@@ -13,6 +13,7 @@
 
 #include "formats/mdk_writer.h"
 #include "tests/formats/temp_folder.h"
+#include "tests/viewer/obj_sources.h"
 #include "tests/viewer/waving_bar.h"
 #include "viewer/scene/mdprep_process.h"
 
@@ -22,25 +23,7 @@ namespace {
 using testing::HasSubstr;
 using testing::StartsWith;
 
-constexpr const char* kSquare = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n";
-
 void write_text(const std::string& path, const std::string& text) { std::ofstream(path) << text; }
-
-/// A sheet of side * side squares: much work for a baker.
-std::string large_obj(int side) {
-  std::string text;
-  for (int y = 0; y <= side; ++y)
-    for (int x = 0; x <= side; ++x)
-      text += "v " + std::to_string(x) + " " + std::to_string(y) + " " +
-              std::to_string((x * y) % 7) + "\n";
-  for (int y = 0; y < side; ++y)
-    for (int x = 0; x < side; ++x) {
-      const int a = y * (side + 1) + x + 1;
-      text += "f " + std::to_string(a) + " " + std::to_string(a + 1) + " " +
-              std::to_string(a + side + 2) + " " + std::to_string(a + side + 1) + "\n";
-    }
-  return text;
-}
 
 template <class Condition>
 bool soon(const Condition& condition) {
