@@ -78,7 +78,6 @@ struct SegmentTrees {
 
 class QueryMoment {
  public:
-  KeyInterval at;
   VertexSource vertices;
   MovingBoxes boxes;
   const SegmentTrees* segment = nullptr;
@@ -173,7 +172,6 @@ bool RayQuery::any_hit(const QueryRay& ray, const QueryMoment& moment) const {
 std::shared_ptr<const QueryMoment> RayQuery::prepare(const KeyInterval& at) const {
   const Model& model = state_->model;
   auto moment = std::make_shared<QueryMoment>();
-  moment->at = at;
   moment->vertices = vertices_at(state_->poses, at);
   moment->boxes = state_->boxes.at(at);
   moment->segment = &state_->segments[segment_of(model, at)];
