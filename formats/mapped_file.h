@@ -15,7 +15,8 @@ class MappedFile {
   MappedFile(const MappedFile&) = delete;
   MappedFile& operator=(const MappedFile&) = delete;
 
-  /// Starts on a page. A file that is truncated by others while it is mapped faults when read.
+  /// Starts on a page. A file that is truncated by others while it is mapped faults when
+  /// read (formats/lost_mappings.h).
   std::span<const std::byte> bytes() const { return bytes_; }
 
  private:

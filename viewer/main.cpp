@@ -7,10 +7,12 @@
 #include "common/base/isa.h"
 #include "common/base/parallel.h"
 #include "common/base/printable_text.h"
+#include "formats/lost_mappings.h"
 #include "viewer/app.h"
 #include "viewer/options.h"
 
 int main(int argc, char** argv) {
+  mdk::name_lost_mappings();
   try {
     const auto options = mdk::parse_options(argc, argv, std::cout);
     if (!options) return EXIT_SUCCESS;

@@ -1,10 +1,11 @@
-// mdprep: runs one subcommand, and turns whatever goes wrong into one sentence on stderr and an exit
-// status.
+// mdprep: runs one subcommand, and turns whatever goes wrong into one sentence on stderr and an
+// exit status.
 #include <csignal>
 #include <exception>
 #include <iostream>
 
 #include "common/base/error.h"
+#include "formats/lost_mappings.h"
 #include "preprocess/cli/command_line.h"
 #include "preprocess/cli/failure.h"
 
@@ -41,5 +42,6 @@ int run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is an error to report, not the end
+  mdk::name_lost_mappings();
   return mdk::run(argc, argv);
 }

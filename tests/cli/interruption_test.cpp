@@ -7,8 +7,11 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <bit>
 #include <chrono>
 #include <csignal>
+#include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <thread>
 
@@ -204,6 +207,38 @@ TEST_F(OnASmallDisk, AReadOnlyOneIsRefusedBeforeTheWork) {
   EXPECT_TRUE(is_one_sentence(outcome.err)) << outcome.err;
   EXPECT_THAT(outcome.err, HasSubstr("a.mdk: cannot be written, the folder "));
   EXPECT_TRUE(read_text(output_) == "old");
+}
+
+/// A mesh of `points` vertices, and a cache of so many frames, which takes no room on the disk.
+void write_cached_mesh(const TempFolder& folder, std::uint32_t points, std::uint32_t frames) {
+  std::string mesh;
+  for (std::uint32_t i = 0; i < points; ++i)
+    mesh += "v " + std::to_string(i % 7) + " " + std::to_string(i / 7) + " 0\n";
+  write_text(folder.file("a.obj"), mesh + "f 1 2 9\n");
+  std::string header("POINTCACHE2\0", 12);
+  const std::uint32_t words[] = {1, points, 0, std::bit_cast<std::uint32_t>(1.0f), frames};
+  header.append(reinterpret_cast<const char*>(words), sizeof words);
+  write_text(folder.file("a.pc2"), header);
+  std::filesystem::resize_file(folder.file("a.pc2"),
+                               header.size() + std::uintmax_t{12} * points * frames);
+}
+
+TEST_F(Interruption, AnInputThatIsCutShortWhileItIsReadIsNamed) {
+  constexpr int kAttempts = 20;  // it may be read already when this comes to it
+  Outcome outcome;
+  for (int i = 0; i < kAttempts && outcome.status != 4; ++i) {
+    write_cached_mesh(folder_, 3000, 6000);
+    ProgramRun run({"bake", folder_.file("a.obj"), folder_.file("a.pc2"), "-o", output_, "-q",
+                    "--decompose", "none"});
+    for (int wait = 0; wait < 5000 && !run.maps(folder_.file("a.pc2")); ++wait)
+      std::this_thread::sleep_for(Milliseconds(1));
+    std::filesystem::resize_file(folder_.file("a.pc2"), 100);
+    outcome = run.wait();
+  }
+  EXPECT_EQ(outcome.status, 4);
+  EXPECT_TRUE(is_one_sentence(outcome.err)) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("a.pc2: was cut short, or its disk failed, while it was"));
+  EXPECT_THAT(folder_.names(), ElementsAre("a.obj", "a.pc2"));
 }
 
 TEST_F(Interruption, NeitherInputNorItsBufferIsEverOverwritten) {

@@ -6,6 +6,7 @@
 #include <sys/wait.h>
 
 #include <algorithm>
+#include <fstream>
 #include <stdexcept>
 
 extern char** environ;
@@ -32,6 +33,13 @@ ProgramRun::ProgramRun(const std::vector<std::string>& arguments) {
 }
 
 void ProgramRun::send_signal(int signal_number) const { kill(process_, signal_number); }
+
+bool ProgramRun::maps(const std::string& path) const {
+  std::ifstream list("/proc/" + std::to_string(process_) + "/maps");
+  for (std::string line; std::getline(list, line);)
+    if (line.ends_with(path)) return true;
+  return false;
+}
 
 Outcome ProgramRun::wait() {
   int status = 0;

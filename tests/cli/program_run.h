@@ -22,6 +22,8 @@ class ProgramRun {
   /// What stderr holds so far.
   std::string err_so_far() const { return read_text(logs_.file("err")); }
   void send_signal(int signal_number) const;
+  /// Whether a file of this name is mapped by it now.
+  bool maps(const std::string& path) const;
   Outcome wait();
 
  private:
