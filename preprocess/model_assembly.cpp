@@ -21,6 +21,10 @@ namespace {
 /// many at a time and knows those it met in other leaves: shallow trees were faster on characters.
 constexpr float kTestCost = 0.4f;
 
+// How far the time spent on boxes is when the fuzzy ones and those of the clusters are there; the
+// boxes of poses come last.
+constexpr double kFuzzyBoxes = 0.8, kWorldBoxes = 0.9;
+
 /// `items` has `per_triangle` entries for each triangle, or none; puts them into the order
 /// `sources`.
 template <class T>
@@ -57,6 +61,51 @@ void set_world_boxes(std::span<const Aabb> boxes, ModelStorage& model) {
     model.bounds.extend(whole);
   }
 }
+
+/// A segment in stretches that share a key with the next, none of them much work.
+std::vector<Segment> stretches_of(const PoseSequence& sequence, const Segment& segment) {
+  constexpr std::size_t kPositions = std::size_t{1} << 20, kMostStretches = 16;
+  const std::size_t intervals = segment.last_key - segment.first_key;
+  const std::size_t count =
+      std::clamp<std::size_t>(intervals * sequence.vertex_count / kPositions, 1,
+                              std::clamp<std::size_t>(intervals, 1, kMostStretches));
+  std::vector<Segment> stretches;
+  for (std::size_t i = 0; i < count; ++i)
+    stretches.push_back(
+        {segment.first_key + static_cast<std::uint32_t>(i * intervals / count),
+         segment.first_key + static_cast<std::uint32_t>((i + 1) * intervals / count)});
+  return stretches;
+}
+
+/// fuzzy_boxes of a segment, which tells on the way how many of all intervals between keys are
+/// done.
+class SegmentBoxes {
+ public:
+  SegmentBoxes(const PoseSequence& sequence, const ClusterMembers& members, const ModelParts& parts,
+               ProgressSink& progress)
+      : sequence_(sequence), members_(members), parts_(parts), progress_(progress) {}
+
+  std::vector<Aabb> of(const Segment& segment) {
+    std::vector<Aabb> boxes(members_.triangles.size());
+    for (const Segment& stretch : stretches_of(sequence_, segment)) {
+      const std::vector<Aabb> more =
+          fuzzy_boxes(sequence_, members_, parts_.local_from_world, stretch);
+      for (std::size_t t = 0; t < boxes.size(); ++t) boxes[t].extend(more[t]);
+      done_ += stretch.last_key - stretch.first_key;
+      progress_.report("build", std::min(1.0, done_ / sequence_.key_count()));
+    }
+    for (std::size_t t = 0; t < parts_.pose_space_boxes.size(); ++t)
+      boxes[t].extend(parts_.pose_space_boxes[t]);
+    return boxes;
+  }
+
+ private:
+  const PoseSequence& sequence_;
+  const ClusterMembers& members_;
+  const ModelParts& parts_;
+  ProgressSink& progress_;
+  double done_ = 0;
+};
 
 /// What the cost needs to know about one cluster of the finished model in one segment.
 ClusterWork cluster_work(const Model& model, std::uint32_t segment, std::size_t cluster,
@@ -159,22 +208,19 @@ AssembledModel assemble_model(PoseSequence sequence, const ClusterMembers& membe
   model.segments = std::move(parts.segments);
   model.clusters = cluster_ranges(members);
   model.fuzzy_boxes.reserve(model.segments.size() * sequence.triangles.size());
-  for (const Segment& segment : model.segments) {
-    std::vector<Aabb> boxes = fuzzy_boxes(sequence, members, parts.local_from_world, segment);
-    for (std::size_t t = 0; t < parts.pose_space_boxes.size(); ++t)
-      boxes[t].extend(parts.pose_space_boxes[t]);
-    append_fuzzy_boxes(boxes, model);
-    progress.report("build",
-                    parts.boxes_until * static_cast<double>(model.fuzzy_trees.size()) /
-                        static_cast<double>((model.segments.size() + 1) * model.clusters.size()));
+  {
+    ProgressPart boxing(progress, 0, parts.boxes_until * kFuzzyBoxes);
+    SegmentBoxes boxes(sequence, members, parts, boxing);
+    for (const Segment& segment : model.segments) append_fuzzy_boxes(boxes.of(segment), model);
   }
   set_world_boxes(cluster_world_boxes(sequence, members), model);
+  progress.report("build", parts.boxes_until * kWorldBoxes);
   model.local_from_world = std::move(parts.local_from_world);
   model.vertex_count = sequence.vertex_count;
   model.triangles = std::move(sequence.triangles);
-  progress.report("build", parts.boxes_until);
 
   const std::vector<double> model_areas = pose_box_areas(sequence);
+  progress.report("build", parts.boxes_until);
   const AreaWeightTable weights(model.local_from_world, model_areas, {});
   const Model view = model.view();
   std::vector<ClusterWork> work;

@@ -97,6 +97,11 @@ std::vector<std::string> make_notes(const DecomposeOptions& options, const Model
   return notes;
 }
 
+SequenceSize size_of(const PoseSequence& sequence) {
+  return {static_cast<double>(sequence.positions.size()),
+          static_cast<double>(sequence.triangles.size())};
+}
+
 /// Residuals are reported relative to the rest pose's diagonal; a rest pose that is a point has
 /// none, and the model's largest extent stands in.
 double residual_unit(double rest_diagonal, double unit) {
@@ -194,7 +199,7 @@ Decomposition with_maps(const PoseSequence& sequence, MotionClusters clusters,
 
 Decomposition decide_motion(const PoseSequence& sequence, const DecomposeOptions& options,
                             double unit, ProgressSink& progress) {
-  const StageEnds ends = predict_stage_ends(sequence, options);
+  const StageEnds ends = predict_stage_ends(size_of(sequence), options);
   ProgressPart clustering(progress, 0, ends.clustered),
       mapping(progress, ends.clustered, ends.mapped);
   MotionClusters clusters = options.stop_percent
@@ -240,7 +245,7 @@ DecomposeResult decompose(PoseSequence sequence, const DecomposeOptions& options
                           ProgressSink& progress) {
   check_input(sequence, options);
   Stopwatch watch;
-  const StageEnds ends = predict_stage_ends(sequence, options);
+  const StageEnds ends = predict_stage_ends(size_of(sequence), options);
   progress.report("decompose", 0);
   const double unit = pose_unit(sequence);
   if (options.sampling == PoseSampling::kPoseSpace) {
@@ -249,13 +254,14 @@ DecomposeResult decompose(PoseSequence sequence, const DecomposeOptions& options
     sequence.skeleton.reset();
   }
   Decomposition decided = decide(sequence, options, unit, progress);
+  progress.report("decompose", ends.mapped);
   select_vertices(sequence, cluster_order(decided.members, sequence.vertex_count));
   decided.members = members_of(sequence, decided.clusters);
   ModelParts parts;
   if (options.quantize) parts.quantized = quantized(sequence, decided, *options.quantize, unit);
   parts.local_from_world = std::move(decided.maps.local_from_world);
   parts.rest_key = decided.clusters.rest_key;
-  progress.report("decompose", ends.mapped);
+  progress.report("decompose", ends.ordered);
   if (sequence.skeleton) {
     parts.segments = {{0, sequence.key_count() - 1}};  // a pose space has no time
     parts.cluster_bones = decided.cluster_bones;

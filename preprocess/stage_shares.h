@@ -3,17 +3,25 @@
 // shown depends on it, no result does.
 #pragma once
 
-#include "common/motion/pose_sequence.h"
 #include "preprocess/pipeline.h"
 
 namespace mdk {
 
+/// How large a sequence is, or is taken to be before it is read.
+struct SequenceSize {
+  double positions = 0;  ///< keys times vertices
+  double triangles = 0;
+};
+
+/// Of a decomposition, on one core of a common machine. Only ratios count.
+double predict_decompose_seconds(const SequenceSize& size, const DecomposeOptions& options);
+
 /// Where each stage ends, as a share of the whole, in this order; after `boxed` the fuzzy kd-trees
 /// are built.
 struct StageEnds {
-  double clustered = 0, mapped = 0, segmented = 0, boxed = 0;
+  double clustered = 0, mapped = 0, ordered = 0, segmented = 0, boxed = 0;
 };
 
-StageEnds predict_stage_ends(const PoseSequence& sequence, const DecomposeOptions& options);
+StageEnds predict_stage_ends(const SequenceSize& size, const DecomposeOptions& options);
 
 }  // namespace mdk

@@ -13,6 +13,7 @@
 #include "preprocess/cli/common_options.h"
 #include "preprocess/cli/depfile.h"
 #include "preprocess/cli/interrupt.h"
+#include "preprocess/cli/job_shares.h"
 #include "preprocess/cli/memory_limit.h"
 #include "preprocess/cli/number_text.h"
 #include "preprocess/cli/output_paths.h"
@@ -25,10 +26,6 @@
 
 namespace mdk {
 namespace {
-
-/// Shares of the whole job, for progress alone: text has to be parsed, the other kinds are mapped.
-double read_until(SourceKind kind) { return kind == SourceKind::kMeshes ? 0.3 : 0.03; }
-constexpr double kDecomposeUntil = 0.97;
 
 struct BakeArguments {
   std::vector<std::string> inputs;
@@ -183,8 +180,8 @@ void run_bake(const BakeArguments& arguments, CommandContext& context) {
 
   BakeOutcome outcome{joined_inputs(arguments), arguments.output, {}, {}, 0, 0, 0};
   Stopwatch total, stage;
-  const double read_share = read_until(source_files.kind);
-  ProgressPart reading(progress, 0, read_share);
+  const JobEnds ends = predict_job_ends(source_files, options);
+  ProgressPart reading(progress, 0, ends.read);
   SourceOptions reading_options = arguments.source;
   reading_options.skeleton = options.sampling == PoseSampling::kPoseSpace;
   ReadResult source = read_source(source_files, reading_options, reading);
@@ -193,12 +190,12 @@ void run_bake(const BakeArguments& arguments, CommandContext& context) {
   outcome.seconds.read = stage.lap();
   require_memory(arguments, source.sequence, limits.memory());
 
-  ProgressPart decomposing(progress, read_share, kDecomposeUntil);
+  ProgressPart decomposing(progress, ends.read, ends.decomposed);
   const DecomposeResult result = decompose(std::move(source.sequence), options, decomposing);
   outcome.seconds.decompose = result.stats.decompose_seconds;
   outcome.seconds.build = result.stats.build_seconds;
 
-  ProgressPart writing(progress, kDecomposeUntil, 1);
+  ProgressPart writing(progress, ends.decomposed, 1);
   stage.lap();
   const Model model = result.model.view();
   const MdkOrigin origin{

@@ -346,31 +346,6 @@ TEST(Decompose, CostsLittleMoreThanThePapersMethodEvenWhereBoxesAtKeysMislead) {
   }
 }
 
-TEST(Decompose, ReportsProgressThatOnlyRises) {
-  struct Recorder final : ProgressSink {
-    double last = 0;
-    std::vector<std::string> stages;
-    void report(std::string_view name, double fraction) override {
-      EXPECT_GE(fraction, 0);
-      EXPECT_LE(fraction, 1);
-      if (stages.empty() || stages.back() != name) stages.emplace_back(name);
-      EXPECT_GE(fraction, last);
-      longest_silence = std::max(longest_silence, fraction - last);
-      last = fraction;
-    }
-    double longest_silence = 0;
-  };
-  for (const bool paper : {false, true}) {
-    Recorder recorder;
-    DecomposeOptions options;
-    if (paper) options.stop_percent = 1;
-    decompose(wild_motion(87, 10), options, recorder);
-    EXPECT_EQ(recorder.stages, (std::vector<std::string>{"decompose", "build"}));
-    EXPECT_EQ(recorder.last, 1);
-    EXPECT_LT(recorder.longest_silence, 0.7);
-  }
-}
-
 TEST(Decompose, RefusesWhatDoesNotExist) {
   const PoseSequence sequence = wild_motion(88, 5);
   const auto code_of = [](const PoseSequence& s, const DecomposeOptions& options) {

@@ -5,35 +5,28 @@
 namespace mdk {
 namespace {
 
-/// A sequence of a size, with nothing in it.
-PoseSequence sized(std::size_t triangles, std::size_t positions) {
-  PoseSequence sequence;
-  sequence.triangles.resize(triangles);
-  sequence.positions.resize(positions);
-  return sequence;
-}
-
 TEST(StageShares, EndInOrderWhateverTheModeAndSize) {
   for (const DecomposeMode mode :
        {DecomposeMode::kMotion, DecomposeMode::kBones, DecomposeMode::kNone})
-    for (const std::size_t positions : {std::size_t{3}, std::size_t{1'000'000}})
+    for (const double positions : {3.0, 1e6})
       for (const std::uint32_t segments : {0u, 1u}) {
         DecomposeOptions options;
         options.mode = mode;
         options.segments = segments;
-        const StageEnds ends = predict_stage_ends(sized(1, positions), options);
+        const StageEnds ends = predict_stage_ends({positions, 1}, options);
         EXPECT_LE(0, ends.clustered);
         EXPECT_LT(ends.clustered, ends.mapped);
-        EXPECT_LE(ends.mapped, ends.segmented);
+        EXPECT_LT(ends.mapped, ends.ordered);
+        EXPECT_LE(ends.ordered, ends.segmented);
         EXPECT_LT(ends.segmented, ends.boxed);
         EXPECT_LT(ends.boxed, 1);
       }
 }
 
 TEST(StageShares, ManyKeysMakeTheirMapsTheLongestWork) {
-  const StageEnds few = predict_stage_ends(sized(80'000, 400'000), {});
+  const StageEnds few = predict_stage_ends({4e5, 8e4}, {});
   EXPECT_GT(few.clustered, 0.5);
-  const StageEnds many = predict_stage_ends(sized(80'000, 20'000'000), {});
+  const StageEnds many = predict_stage_ends({2e7, 8e4}, {});
   EXPECT_LT(many.clustered, 0.25);
   EXPECT_GT(many.mapped - many.clustered, 0.5);
 }
@@ -41,10 +34,13 @@ TEST(StageShares, ManyKeysMakeTheirMapsTheLongestWork) {
 TEST(StageShares, WhatIsLeftOutTakesNoTime) {
   DecomposeOptions options;
   options.segments = 1;
-  const StageEnds uncut = predict_stage_ends(sized(100, 1'000'000), options);
-  EXPECT_EQ(uncut.mapped, uncut.segmented);
+  const StageEnds uncut = predict_stage_ends({1e6, 100}, options);
+  EXPECT_EQ(uncut.ordered, uncut.segmented);
   options.mode = DecomposeMode::kBones;
-  EXPECT_EQ(predict_stage_ends(sized(100, 1'000'000), options).clustered, 0);
+  EXPECT_EQ(predict_stage_ends({1e6, 100}, options).clustered, 0);
+  const StageEnds of_bones = predict_stage_ends({1e6, 100}, options);
+  options.mode = DecomposeMode::kNone;
+  EXPECT_LT(predict_stage_ends({1e6, 100}, options).mapped, of_bones.mapped / 2);
 }
 
 }  // namespace
