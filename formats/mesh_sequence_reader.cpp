@@ -17,6 +17,8 @@ namespace {
 
 constexpr std::size_t kMaxPoseBytes = std::size_t{16} << 30;
 constexpr std::size_t kFilesPerReport = 16;  // read at a time, and so in memory beside the poses
+constexpr double kCopied =
+    0.7;  // share of a cache's reading; then vertices are welded in all poses
 
 TriangleMesh read_mesh(const std::string& path, ObjContent content) {
   const std::string extension = std::filesystem::path(path).extension().string();
@@ -137,12 +139,13 @@ ReadResult read_cached_mesh(const std::string& mesh, const std::string& cache,
   progress.report("read", 0);
   TriangleMesh first = read_mesh(mesh, ObjContent::kShapeAndMaterials);
   ReadResult result = begin_result(mesh, first);
-  PointCache frames =
-      read_point_cache(cache, {options.fps, result.sequence.vertex_count}, progress);
+  ProgressPart copying(progress, 0, kCopied);
+  PointCache frames = read_point_cache(cache, {options.fps, result.sequence.vertex_count}, copying);
   result.sequence.key_times = std::move(frames.key_times);
   result.sequence.positions = std::move(frames.positions);
   finish(name, result.sequence);
   result.dependencies.insert(result.dependencies.begin(), {mesh, cache});
+  progress.report("read", 1);
   return result;
 }
 

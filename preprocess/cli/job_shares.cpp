@@ -16,7 +16,7 @@ constexpr JobEnds kOfGltf = {0.03, 0.97};
 
 // Measured, as those of preprocess/stage_shares.cpp.
 constexpr double kParsePerByte = 8e-9;
-constexpr double kCopyPerPosition = 0.04e-6;
+constexpr double kCopyPerPosition = 0.055e-6;
 constexpr double kWrite = 0.02, kWritePerPosition = 0.02e-6;
 
 constexpr double kTextPerTriangle = 30;  // bytes; for each there are half a vertex and a face
