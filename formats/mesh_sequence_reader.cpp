@@ -11,6 +11,7 @@
 #include "formats/obj_reader.h"
 #include "formats/ply_reader.h"
 #include "formats/point_cache_reader.h"
+#include "formats/utf8_text.h"
 
 namespace mdk {
 namespace {
@@ -99,7 +100,8 @@ void require_room(const NumberedFiles& sequence, std::size_t vertices) {
 ReadResult read_mesh_sequence(const NumberedFiles& sequence, const ReadOptions& options,
                               ProgressSink& progress) {
   const std::vector<std::string>& files = sequence.files;
-  require_clip(sequence.name, files.front(), options);
+  const std::string clip = as_utf8(sequence.name);
+  require_clip(clip, files.front(), options);
   progress.report("read", 0);
   TriangleMesh first = read_mesh(files.front(), ObjContent::kShapeAndMaterials);
   require_room(sequence, first.vertices.size());
@@ -126,7 +128,7 @@ ReadResult read_mesh_sequence(const NumberedFiles& sequence, const ReadOptions& 
     result.notes.push_back("vertex colours change over time; those of " + files.front() +
                            " are shown");
   if (const std::string gaps = gap_sentence(sequence); !gaps.empty()) result.notes.push_back(gaps);
-  finish(sequence.name, poses);
+  finish(clip, poses);
   result.dependencies.insert(result.dependencies.begin(), files.begin(), files.end());
   progress.report("read", 1);
   return result;
@@ -134,7 +136,7 @@ ReadResult read_mesh_sequence(const NumberedFiles& sequence, const ReadOptions& 
 
 ReadResult read_cached_mesh(const std::string& mesh, const std::string& cache,
                             const ReadOptions& options, ProgressSink& progress) {
-  const std::string name = std::filesystem::path(cache).stem().string();
+  const std::string name = as_utf8(std::filesystem::path(cache).stem().string());
   require_clip(name, cache, options);
   progress.report("read", 0);
   TriangleMesh first = read_mesh(mesh, ObjContent::kShapeAndMaterials);

@@ -10,6 +10,7 @@
 #include "formats/check_text.h"
 #include "formats/pose_check.h"
 #include "formats/skeleton_check.h"
+#include "formats/utf8_text.h"
 
 namespace mdk {
 namespace {
@@ -37,25 +38,6 @@ bool is_box(const Aabb& b) {
 /// In a frame that is a finite box it lies as one, too.
 bool is_box(const QuantizedBox& b) {
   return b.lo[0] <= b.hi[0] && b.lo[1] <= b.hi[1] && b.lo[2] <= b.hi[2];
-}
-
-/// No stray continuation, overlong form, surrogate or value past U+10FFFF.
-bool is_utf8(const std::string& text) {
-  for (std::size_t i = 0; i < text.size();) {
-    const auto lead = static_cast<unsigned char>(text[i++]);
-    if (lead < 0x80) continue;
-    const int more = lead >= 0xf0 ? 3 : lead >= 0xe0 ? 2 : 1;
-    if (lead < 0xc2 || lead > 0xf4) return false;
-    std::uint32_t value = lead & (0x3fu >> more);
-    for (int k = 0; k < more; ++k, ++i) {
-      if (i == text.size() || (static_cast<unsigned char>(text[i]) & 0xc0) != 0x80) return false;
-      value = (value << 6) | (static_cast<unsigned char>(text[i]) & 0x3fu);
-    }
-    constexpr std::uint32_t kLeast[] = {0, 0x80, 0x800, 0x10000};
-    if (value < kLeast[more] || value > 0x10ffff || (value >= 0xd800 && value < 0xe000))
-      return false;
-  }
-  return true;
 }
 
 std::string check_counts(const Model& m) {

@@ -51,6 +51,14 @@ TEST_F(MeshSequence, AMissingNumberLeavesItsGapInTimeAndANote) {
   EXPECT_THAT(result.notes, ElementsAre(HasSubstr("missing, numbers 7 to 8;")));
 }
 
+TEST_F(MeshSequence, FilesWhoseNamesAreNoUtf8MakeAClipWhoseNameIs) {
+  for (const char* number : {"1", "2"})
+    write_text(folder_.file(std::string("k\xff\xfe_") + number + ".obj"), square(0));
+  SilentProgress silent;
+  const NumberedFiles files = files_of_pattern(folder_.file("k\xff\xfe_####.obj"));
+  EXPECT_THAT(read_mesh_sequence(files, {}, silent).sequence.clips, ElementsAre(Clip{"k??", 0, 2}));
+}
+
 TEST_F(MeshSequence, TheFileWhoseFacesDifferIsNamed) {
   put(1, square(0));
   put(2, square(1));
