@@ -8,6 +8,7 @@
 #include <system_error>
 
 #include "common/base/error.h"
+#include "common/base/printable_text.h"
 #include "formats/neighbor_path.h"
 
 namespace mdk::gltf {
@@ -76,12 +77,12 @@ Bytes read_whole_file(const std::string& path) {
 std::string resolve_uri(const std::string& gltf_path, const std::string& uri) {
   const std::string name = percent_decoded(uri);
   if (name.size() > kMaxNameBytes)
-    throw bad_input(gltf_path, "refers to \"" + uri.substr(0, 40) + "…\", which at " +
-                                   std::to_string(name.size()) +
+    throw bad_input(gltf_path, "refers to \"" + printable_line(uri.substr(0, 40)) +
+                                   "…\", which at " + std::to_string(name.size()) +
                                    " bytes is no name that a file can have");
   const std::optional<std::string> path = neighbor_path(gltf_path, name);
   if (!path || has_scheme(name))
-    throw bad_input(gltf_path, "refers to \"" + uri.substr(0, 200) +
+    throw bad_input(gltf_path, "refers to \"" + printable_line(uri.substr(0, 200)) +
                                    "\", which is not a file in its own folder; put it there");
   return *path;
 }

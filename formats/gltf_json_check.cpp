@@ -4,11 +4,12 @@
 #include <limits>
 
 #include "common/base/error.h"
+#include "common/base/printable_text.h"
 
 namespace mdk::gltf {
 
 void JsonCheck::fail(const std::string& place, const std::string& sentence) const {
-  throw bad_input(file_, place + " " + sentence);
+  throw bad_input(file_, printable_line(place + " " + sentence));
 }
 
 const Json* JsonCheck::member(const Json& o, const std::string& at, const char* key,

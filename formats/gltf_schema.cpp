@@ -18,6 +18,7 @@ namespace mdk::gltf {
 namespace {
 
 constexpr int kMaxNesting = 256;
+constexpr std::size_t kMostOfName = 60;  // of an extension, in a sentence
 
 struct KnownExtension {
   std::string_view name;
@@ -105,13 +106,13 @@ class SchemaCheck : private JsonCheck {
         if (!e.is_string()) fail("the file", "has an \"extensionsRequired\" that is no string");
         const std::string name = e.get<std::string>();
         if (!is_known(name))
-          fail("the file",
-               "needs the extension " + name + ", which is not supported; " + cure_for(name));
+          fail("the file", "needs the extension " + name.substr(0, kMostOfName) +
+                               ", which is not supported; " + cure_for(name));
       }
     if (const Json* used = array(root(), "the file", "extensionsUsed", Need::kOptional))
       for (const Json& e : *used)
         if (e.is_string() && !is_known(e.get<std::string>()))
-          summary_.ignored_extensions.push_back(e.get<std::string>());
+          summary_.ignored_extensions.push_back(e.get<std::string>().substr(0, kMostOfName));
   }
 
   void buffer(const Json& o, const std::string& at) {

@@ -8,6 +8,8 @@
 #include <system_error>
 #include <type_traits>
 
+#include "common/base/printable_text.h"
+
 namespace mdk {
 
 /// The whole word as a number, rounded correctly and so alike on every machine; a real number too
@@ -26,10 +28,10 @@ std::optional<Number> parsed(std::string_view word) {
   return value;
 }
 
-/// Not more of a word than a message can hold.
+/// Not more of a word than a message can hold, and nothing that would cut the message short.
 inline std::string quoted(std::string_view word) {
   std::string text(1, '"');
-  text.append(word.substr(0, 40));
+  text.append(printable_line(std::string(word.substr(0, 40))));
   return text.append(1, '"');
 }
 

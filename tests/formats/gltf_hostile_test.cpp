@@ -270,6 +270,19 @@ TEST(GltfHostile, ANameLongerThanFilesHaveIsNotRepeatedAtLength) {
   }
 }
 
+TEST(GltfHostile, AnExtensionsNameNeitherCutsNorFloodsTheSentence) {
+  GltfBuilder b = whole_file();
+  b.set("extensionsRequired", "[\"X\\u0000\\u001b" + std::string(100000, 'y') + "\"]");
+  try {
+    read_built(b);
+    ADD_FAILURE() << "nothing was thrown";
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("needs the extension X??yyy"));
+    EXPECT_THAT(error.what(), testing::HasSubstr(", which is not supported; export it again"));
+    EXPECT_LT(std::string(error.what()).size(), 300u);
+  }
+}
+
 TEST(GltfHostile, SaysWhichFileCannotBeRead) {
   const TempFolder folder;
   expect_refused(ErrorCode::kIo, {"nothing.glb", "no such file"},
