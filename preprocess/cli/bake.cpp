@@ -166,6 +166,17 @@ std::uint64_t smallest_scratch_block(const MemoryLimit& limit) {
   return limit.bytes() == 0 ? 0 : std::max(limit.bytes() / kShare, kSmallest);
 }
 
+/// decompose, whose sentences on what it was given do not know where that came from.
+DecomposeResult decompose_source(const BakeArguments& arguments, PoseSequence sequence,
+                                 const DecomposeOptions& options, ProgressSink& progress) {
+  try {
+    return decompose(std::move(sequence), options, progress);
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::kBadInput) throw;
+    throw bad_input(joined_inputs(arguments), error.what());
+  }
+}
+
 void run_bake(const BakeArguments& arguments, CommandContext& context) {
   const MachineLimits limits(arguments.machine);
   const DecomposeOptions options = parse_decompose_options(arguments);
@@ -191,7 +202,8 @@ void run_bake(const BakeArguments& arguments, CommandContext& context) {
   require_memory(arguments, source.sequence, limits.memory());
 
   ProgressPart decomposing(progress, ends.read, ends.decomposed);
-  const DecomposeResult result = decompose(std::move(source.sequence), options, decomposing);
+  const DecomposeResult result =
+      decompose_source(arguments, std::move(source.sequence), options, decomposing);
   outcome.seconds.decompose = result.stats.decompose_seconds;
   outcome.seconds.build = result.stats.build_seconds;
 

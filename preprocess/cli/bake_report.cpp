@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "common/base/printable_text.h"
 #include "preprocess/cli/number_text.h"
 
 namespace mdk {
@@ -73,7 +74,7 @@ std::string bake_summary(const Model& model, const DecomposeStats& stats,
   };
   const auto percent = [](double share) { return fixed_text(share * 100, 3) + " %"; };
   const BakeSeconds& s = outcome.seconds;
-  return outcome.output + ": " + count(model.triangle_count(), "triangle") + ", " +
+  return printable_line(outcome.output) + ": " + count(model.triangle_count(), "triangle") + ", " +
          grouped_text(model.vertex_count) + " vertices, " + count(model.key_count(), "key") +
          " in " + count(model.clips.size(), "clip") + "\n  " +
          count(model.cluster_count(), "cluster") + " (" + stop_text(stats.stop_reason) + "), " +

@@ -28,6 +28,10 @@ void require_writable_place(const std::string& path) {
   if (path.empty()) throw Error(ErrorCode::kUsage, "an output needs a name, not \"\"");
   if (fs::is_directory(path, problem))
     throw io_error(path, "is a folder; give the name of a file in it");
+  const fs::file_status status = fs::status(path, problem);
+  if (fs::exists(status) && !fs::is_regular_file(status))
+    throw io_error(path,
+                   "cannot be written: it is not a regular file, and would be replaced by one");
   const fs::path parent = fs::path(path).parent_path();
   const std::string folder = parent.empty() ? "." : parent.string();
   if (!fs::is_directory(folder, problem))

@@ -9,6 +9,7 @@
 
 #include "common/base/error.h"
 #include "common/base/isa.h"
+#include "common/base/printable_text.h"
 #include "common/trace/renderer.h"
 #include "common/trace/shutter.h"
 #include "formats/image_writer.h"
@@ -195,8 +196,9 @@ Json render_frames(const RenderArguments& arguments, const Model& model,
     }
     if (arguments.messages.verbose) {
       progress.clear();
-      std::cerr << "mdprep: " << path << ": " << fixed_text(stats.time_to_image_ms(), 2)
-                << " ms to the image" << heat_text(heat) << "\n";
+      std::cerr << "mdprep: " << printable_line(path) << ": "
+                << fixed_text(stats.time_to_image_ms(), 2) << " ms to the image" << heat_text(heat)
+                << "\n";
     }
     request.counting = Counting::kOn;  // a second time, since counting slows a frame down
     const FrameStats counted = arguments.stats.empty() ? stats : renderer.trace(request);
@@ -210,9 +212,9 @@ Json render_frames(const RenderArguments& arguments, const Model& model,
 void print_summary(const RenderArguments& arguments, const Json& rows) {
   std::vector<double> times;
   for (const Json& row : rows) times.push_back(row["time_to_image_ms"]);
-  std::cerr << arguments.output << ": " << rows.size() << (rows.size() == 1 ? " frame" : " frames")
-            << ", " << fixed_text(median(times), 2) << " ms to the image (median, "
-            << arguments.technique << ", " << thread_count()
+  std::cerr << printable_line(arguments.output) << ": " << rows.size()
+            << (rows.size() == 1 ? " frame" : " frames") << ", " << fixed_text(median(times), 2)
+            << " ms to the image (median, " << arguments.technique << ", " << thread_count()
             << (thread_count() == 1 ? " thread, " : " threads, ") << isa_in_use() << ")\n";
 }
 

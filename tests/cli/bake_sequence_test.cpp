@@ -92,5 +92,20 @@ TEST_F(BakeSequence, AFileOfOtherFacesIsNamedAndNothingIsWritten) {
   EXPECT_TRUE(outputs_.names().empty());
 }
 
+TEST_F(BakeSequence, WhatCannotBeDecomposedIsNamed) {
+  write_text(inputs_.file("far.obj"), "v 1e38 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n");
+  const Outcome outcome = run_mdprep({"bake", inputs_.file("far.obj"), "-o", baked_});
+  EXPECT_EQ(outcome.status, 3);
+  EXPECT_TRUE(is_one_sentence(outcome.err)) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("far.obj: a vertex position is not a number between"));
+}
+
+TEST_F(BakeSequence, AReportThatCannotBeWrittenIsRefusedBeforeTheWork) {
+  const Outcome outcome = run_mdprep({"bake", file(1), "-o", baked_, "--report", "/dev/full"});
+  EXPECT_EQ(outcome.status, 4);
+  EXPECT_THAT(outcome.err, HasSubstr("/dev/full: cannot be written: it is not a regular file"));
+  EXPECT_FALSE(std::filesystem::exists(baked_));
+}
+
 }  // namespace
 }  // namespace mdk::test

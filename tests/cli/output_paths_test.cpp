@@ -1,6 +1,7 @@
 #include "preprocess/cli/output_paths.h"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <filesystem>
 
@@ -32,6 +33,15 @@ TEST(OutputPaths, RefusesAMissingFolderAFolderAndNoName) {
   EXPECT_THROW(require_writable_place(folder.file("missing/new.mdk")), Error);
   EXPECT_THROW(require_writable_place(folder.path()), Error);
   EXPECT_THROW(require_writable_place(""), Error);
+}
+
+TEST(OutputPaths, RefusesWhatIsNoRegularFile) {
+  const TempFolder folder;
+  ASSERT_EQ(::mkfifo(folder.file("pipe").c_str(), 0600), 0);
+  EXPECT_THROW(require_writable_place(folder.file("pipe")), Error);
+  EXPECT_THROW(require_writable_place("/dev/full"), Error);
+  std::filesystem::create_symlink("nothing", folder.file("dangling"));
+  EXPECT_NO_THROW(require_writable_place(folder.file("dangling"))) << "it is replaced by the file";
 }
 
 TEST(OutputPaths, SeesThroughOtherNamesOfOneFile) {
