@@ -42,7 +42,11 @@ class Words {
 /// Cuts the text into statements and counts the lines they start on.
 class Statements {
  public:
-  explicit Statements(std::string_view text) : rest_(text) {}
+  /// A byte order mark, which some editors put before UTF-8, is no part of the first.
+  explicit Statements(std::string_view text) : rest_(text) {
+    constexpr std::string_view kMark = "\xef\xbb\xbf";
+    if (rest_.starts_with(kMark)) rest_.remove_prefix(kMark.size());
+  }
 
   bool next(std::string_view& statement) {
     if (rest_.empty()) return false;

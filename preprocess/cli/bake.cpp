@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "common/base/error.h"
+#include "common/base/printable_text.h"
 #include "common/base/stopwatch.h"
 #include "formats/mdk_writer.h"
 #include "preprocess/cli/bake_report.h"
@@ -119,9 +120,10 @@ std::string joined_inputs(const BakeArguments& arguments) {
 void print_notes(const BakeArguments& arguments, const std::vector<std::string>& notes) {
   if (arguments.messages.quiet || notes.empty()) return;
   if (arguments.messages.verbose) {
-    for (const std::string& note : notes) std::cerr << "mdprep: note: " << note << "\n";
+    for (const std::string& note : notes)
+      std::cerr << "mdprep: note: " << printable_line(note) << "\n";
   } else {
-    std::cerr << "mdprep: " << joined_inputs(arguments) << ": " << notes.size()
+    std::cerr << "mdprep: " << printable_line(joined_inputs(arguments)) << ": " << notes.size()
               << (notes.size() == 1 ? " note" : " notes")
               << " on what was left out or is not as asked; -v shows them\n";
   }

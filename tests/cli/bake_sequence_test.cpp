@@ -107,5 +107,14 @@ TEST_F(BakeSequence, AReportThatCannotBeWrittenIsRefusedBeforeTheWork) {
   EXPECT_FALSE(std::filesystem::exists(baked_));
 }
 
+TEST_F(BakeSequence, NamesInNotesAreFitForATerminal) {
+  write_text(inputs_.file("tinted.obj"),
+             "mtllib \x1b[31m.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n");
+  const Outcome outcome = run_mdprep({"bake", inputs_.file("tinted.obj"), "-o", baked_, "-v"});
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("material file \"?[31m.mtl\" of"));
+  EXPECT_EQ(outcome.err.find('\x1b'), std::string::npos);
+}
+
 }  // namespace
 }  // namespace mdk::test

@@ -78,6 +78,10 @@ TEST_F(ObjReader, FacesNameTheirMaterialsAndCornersTheirTexcoords) {
   EXPECT_THAT(parse_obj("a.obj", text, ObjContent::kShape).materials.names, IsEmpty());
 }
 
+TEST_F(ObjReader, AByteOrderMarkHidesNoVertex) {
+  EXPECT_EQ(read("\xef\xbb\xbf" + kSquare + "f 1 2 3 4\n").vertices.size(), 4u);
+}
+
 TEST_F(ObjReader, AWordWithAZeroByteDoesNotCutTheSentenceShort) {
   expect_bad(kSquare + std::string("f 1 2\0\x1b 3\n", 11),
              "line 5: \"2??\" is not the number of a vertex");
