@@ -182,6 +182,7 @@ TEST_F(CommandLine, ContentThatCannotBeUsedIsStatus3) {
 }
 
 TEST_F(CommandLine, TooLittleMemoryIsStatus5) {
+  if (std::string(MDK_SANITIZE) != "") GTEST_SKIP() << "a sanitizer takes more than the limit";
   for (const char* limit : {"1M", "10M"})
     expect_refused({"bake", source(), "-o", out("x.mdk"), "--memory-limit", limit}, 5);
   expect_refused({"render", baked(), "-o", out("x.png"), "--frames", "0", "--size", "8000x8000",
@@ -192,6 +193,7 @@ TEST_F(CommandLine, TooLittleMemoryIsStatus5) {
 }
 
 TEST_F(CommandLine, AnyMemoryLimitIsKeptOrSaidToBeTooLow) {
+  if (std::string(MDK_SANITIZE) != "") GTEST_SKIP() << "a sanitizer takes more than the limit";
   write_sample_gltf(out("large.gltf"), {200, 64});
   int done = 0, refused = 0;
   for (int megabytes = 20; megabytes <= 100; megabytes += 10) {
