@@ -1,26 +1,13 @@
 #include "formats/assimp_reader.h"
 
-#include <algorithm>
-#include <array>
 #include <utility>
 
 #include "common/base/error.h"
 #include "formats/assimp_process.h"
+#include "formats/file_kind.h"
 #include "formats/gltf_reader.h"
 
 namespace mdk {
-
-std::span<const std::string_view> assimp_extensions() {
-  static constexpr std::array<std::string_view, 11> kExtensions = {
-      ".3ds", ".ase", ".b3d", ".bvh", ".dae", ".fbx", ".lws", ".md5mesh", ".ms3d", ".smd", ".x"};
-  return kExtensions;
-}
-
-#ifdef MDK_HAVE_ASSIMP
-bool has_assimp() { return true; }
-#else
-bool has_assimp() { return false; }
-#endif
 
 ReadResult read_with_assimp(const std::string& path, const ReadOptions& options,
                             ProgressSink& progress) {

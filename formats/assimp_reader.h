@@ -1,20 +1,12 @@
 // Reads what Assimp reads: FBX, Collada, MD5 and more, through the program mdk-assimp.
 #pragma once
 
-#include <span>
 #include <string>
-#include <string_view>
 
 #include "common/base/progress.h"
 #include "formats/reading.h"
 
 namespace mdk {
-
-/// Extensions of formats with moving meshes, lower case, with their dot.
-std::span<const std::string_view> assimp_extensions();
-
-/// Whether this build has mdk-assimp.
-bool has_assimp();
 
 /// The file as read_gltf would read it as glTF: what Assimp makes of it comes as one from a process
 /// of its own, and is checked like any other. `read_through` and a note say so. Names of images and

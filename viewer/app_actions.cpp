@@ -162,9 +162,8 @@ void App::open(const std::vector<std::string>& paths) {
     std::vector<FileChoice> choices = animations_in(folder);
     if (choices.empty())
       throw Error(ErrorCode::kBadInput,
-                  folder +
-                      ": this folder holds no animation; .mdk, .glb, .gltf, and .obj or .ply "
-                      "with a point cache or one for each key are opened");
+                  folder + ": this folder holds no animation; opened are " + openable_extensions() +
+                      ", and .obj or .ply with a point cache or one for each key");
     if (choices.size() == 1)
       loader_.load(choices.front().paths);
     else

@@ -95,9 +95,10 @@ std::optional<ViewerOptions> parse_options(int argc, const char* const* argv, st
   CLI::App app{"mdview: look at an animated model in an .mdk file while it is ray traced.",
                "mdview"};
   app.set_version_flag("--version", "mdview " MDK_VERSION);
-  app.add_option("FILE", options.file,
-                 "what to open: .mdk, made by mdprep bake, or .glb or .gltf, baked now; "
-                 "files can also be dropped on the window");
+  app.add_option(
+      "FILE", options.file,
+      "what to open: .mdk, made by mdprep bake, or a source that it reads, such as .glb, "
+      ".gltf or .fbx, baked now; files and folders can also be dropped on the window");
   app.add_option("--size", size, "window size WxH (1280x800)");
   app.add_option("--technique", options.technique, "technique to start with, by id");
   app.add_option("--shading", shading,

@@ -1,14 +1,12 @@
 #include "preprocess/cli/source_reader.h"
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
-#include <array>
 #include <filesystem>
-#include <string_view>
 #include <system_error>
 
 #include "common/base/error.h"
 #include "formats/assimp_reader.h"
+#include "formats/file_kind.h"
 #include "formats/gltf_reader.h"
 #include "formats/mesh_sequence_reader.h"
 #include "preprocess/cli/number_text.h"
@@ -47,37 +45,16 @@ ReadOptions parse_source_options(const SourceOptions& options) {
 
 namespace {
 
-constexpr std::array<std::string_view, 2> kMeshExtensions = {".obj", ".ply"};
-
-std::string extension_of(const std::string& path) {
-  std::string extension = std::filesystem::path(path).extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(), [](char c) {
-    return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  });
-  return extension;
-}
-
-bool is_gltf(const std::string& path) {
-  const std::string extension = extension_of(path);
-  return extension == ".gltf" || extension == ".glb";
-}
-bool is_for_assimp(const std::string& path) {
-  const auto extensions = assimp_extensions();
-  return std::ranges::find(extensions, extension_of(path)) != extensions.end();
-}
-bool is_cache(const std::string& path) {
-  const std::string extension = extension_of(path);
-  return extension == ".pc2" || extension == ".mdd";
-}
-bool is_mesh(const std::string& path) {
-  return std::ranges::find(kMeshExtensions, extension_of(path)) != kMeshExtensions.end();
+bool stands_alone(const std::string& path) {
+  const FileKind kind = file_kind(path);
+  return kind == FileKind::kGltf || kind == FileKind::kForAssimp;
 }
 
 [[noreturn]] void refuse(const std::string& path) {
-  if (is_cache(path))
+  if (file_kind(path) == FileKind::kPointCache)
     throw Error(ErrorCode::kUsage,
                 path + ": is a point cache; name the mesh it moves, an .obj or .ply, before it");
-  const std::string extension = extension_of(path);
+  const std::string extension = lower_extension(path);
   throw bad_input(
       path, (extension.empty() ? "a name without an extension" : "files that end in " + extension) +
                 " cannot be read, only .gltf, .glb, .obj, .ply, .fbx, .dae, .md5mesh, .x and a few "
@@ -87,10 +64,11 @@ bool is_mesh(const std::string& path) {
 Source find_one(const std::string& path) {
   std::error_code ignored;
   if (std::filesystem::is_directory(path, ignored))
-    return {SourceKind::kMeshes, numbered_files_in(path, kMeshExtensions), {}};
-  if (is_gltf(path)) return {SourceKind::kGltf, {"", {path}, {0}}, {}};
-  if (is_for_assimp(path)) return {SourceKind::kThroughAssimp, {"", {path}, {0}}, {}};
-  if (!is_mesh(path)) refuse(path);
+    return {SourceKind::kMeshes, numbered_files_in(path, extensions_of(FileKind::kMesh)), {}};
+  const FileKind kind = file_kind(path);
+  if (kind == FileKind::kGltf) return {SourceKind::kGltf, {"", {path}, {0}}, {}};
+  if (kind == FileKind::kForAssimp) return {SourceKind::kThroughAssimp, {"", {path}, {0}}, {}};
+  if (kind != FileKind::kMesh) refuse(path);
   if (is_number_pattern(path)) return {SourceKind::kMeshes, files_of_pattern(path), {}};
   Source source{SourceKind::kMeshes, files_from(path), {}};
   if (const std::size_t count = source.files.files.size(); count > 1)
@@ -103,14 +81,12 @@ Source find_one(const std::string& path) {
 
 Source find_source(std::span<const std::string> inputs) {
   if (inputs.size() == 1) return find_one(inputs.front());
-  if (inputs.size() == 2 && is_mesh(inputs[0]) && is_cache(inputs[1]))
+  const bool meshes_come = file_kind(inputs.front()) == FileKind::kMesh;
+  if (meshes_come && inputs.size() == 2 && file_kind(inputs[1]) == FileKind::kPointCache)
     return {SourceKind::kMeshAndCache, {"", {inputs[0], inputs[1]}, {0, 1}}, {}};
-  const auto stands_alone = [](const std::string& path) {
-    return is_gltf(path) || is_for_assimp(path);
-  };
-  if (!stands_alone(inputs.front()) && !is_mesh(inputs.front())) refuse(inputs.front());
+  if (!meshes_come && !stands_alone(inputs.front())) refuse(inputs.front());
   for (const std::string& path : inputs)
-    if (extension_of(path) != extension_of(inputs.front()) || stands_alone(path))
+    if (lower_extension(path) != lower_extension(inputs.front()) || stands_alone(path))
       throw Error(ErrorCode::kUsage,
                   inputs[1] +
                       ": several inputs are an .obj or .ply and the .pc2 or .mdd point "

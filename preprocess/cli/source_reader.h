@@ -34,10 +34,11 @@ struct Source {
   std::vector<std::string> notes;  ///< what was found beside what was named
 };
 
-/// A file (.gltf, .glb, or one that Assimp reads); a mesh (.obj, .ply) and the cache that moves it (.pc2, .mdd); or meshes: a
-/// folder, 'walk_####.obj', several files, or one file, which those numbered after it follow.
-/// Looks into folders and opens no file. Throws Error, naming what is read: kBadInput for a name
-/// that is not, kUsage for names that do not go together, and what numbered_files.h throws.
+/// A file (.gltf, .glb, or one that Assimp reads); a mesh (.obj, .ply) and the cache that moves it
+/// (.pc2, .mdd); or meshes: a folder, 'walk_####.obj', several files, or one file, which those
+/// numbered after it follow. Looks into folders and opens no file. Throws Error, naming what is
+/// read: kBadInput for a name that is not, kUsage for names that do not go together, and what
+/// numbered_files.h throws.
 Source find_source(std::span<const std::string> inputs);
 
 /// Throws what the format's reader throws.

@@ -3,10 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 
 #include "common/base/error.h"
+#include "formats/file_kind.h"
 #include "tests/formats/temp_folder.h"
 
 namespace mdk::test {
@@ -31,6 +33,24 @@ TEST(FolderList, OffersBakedFilesThenGltfThenMeshesWithCachesThenASequence) {
   EXPECT_EQ(choices[4].paths,
             (std::vector<std::string>{folder.file("cow.obj"), folder.file("cow.pc2")}));
   EXPECT_EQ(choices[5].paths, (std::vector<std::string>{folder.path()}));
+}
+
+TEST(FolderList, OffersWhatIsReadThroughAssimpAfterGltfInBuildsThatHaveIt) {
+  TempFolder folder;
+  std::vector<std::string> expected;
+  for (const std::string_view extension : extensions_of(FileKind::kForAssimp)) {
+    expected.push_back("walk" + std::string(extension));
+    std::ofstream(folder.file(expected.back())) << "x";
+  }
+  ASSERT_GT(expected.size(), 5u);
+  if (!has_assimp()) expected.clear();
+  for (const char* name : {"hand.glb", "run.obj", "run.pc2", "bend.md5anim"})
+    std::ofstream(folder.file(name)) << "x";
+  std::ranges::sort(expected);
+  expected.insert(expected.begin(), "hand.glb");
+  expected.push_back("run.obj + run.pc2");
+  EXPECT_EQ(labels_of(animations_in(folder.path())), expected);
+  EXPECT_EQ(openable_extensions().find(".fbx") != std::string::npos, has_assimp());
 }
 
 TEST(FolderList, IsEmptyWhereThereIsNothingAndRefusesWhatIsNoFolder) {

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "common/base/figure_text.h"
+#include "formats/file_kind.h"
 #include "viewer/panel/tabs.h"
 #include "viewer/panel/ui_parts.h"
 
@@ -69,7 +70,7 @@ void draw_opening(const Theme& theme, const ViewState& state, UiResult& result) 
   heading(theme, "OPEN");
   std::vector<CommandButton> buttons = {
       {"open", "Open or recent", "Recent files, or a path (L)", Command::kToggleFileMenu}};
-  if (state.file && !state.path.ends_with(".mdk"))
+  if (state.file && file_kind(state.path) != FileKind::kBaked)
     buttons.push_back({"keep-baked", "Keep as .mdk",
                        "Write what was baked beside its source: that opens at once",
                        Command::kKeepBaked});

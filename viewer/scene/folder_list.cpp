@@ -1,23 +1,17 @@
 #include "viewer/scene/folder_list.h"
 
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <filesystem>
+#include <iterator>
 
 #include "common/base/error.h"
+#include "formats/file_kind.h"
 
 namespace mdk {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string lower_extension(const fs::path& path) {
-  std::string extension = path.extension().string();
-  std::ranges::transform(extension, extension.begin(),
-                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension;
-}
 
 std::vector<fs::path> files_in(const std::string& folder) {
   std::error_code failure;
@@ -33,6 +27,18 @@ std::vector<fs::path> files_in(const std::string& folder) {
   return files;
 }
 
+/// The mesh with each point cache of its name; `files` is sorted.
+std::vector<FileChoice> with_caches(const fs::path& mesh, const std::vector<fs::path>& files) {
+  std::vector<FileChoice> choices;
+  for (const std::string_view extension : extensions_of(FileKind::kPointCache)) {
+    const fs::path cache = fs::path(mesh).replace_extension(extension);
+    if (std::ranges::binary_search(files, cache))
+      choices.push_back({mesh.filename().string() + " + " + cache.filename().string(),
+                         {mesh.string(), cache.string()}});
+  }
+  return choices;
+}
+
 bool ends_in_digit(const fs::path& path) {
   const std::string stem = path.stem().string();
   return !stem.empty() && std::isdigit(static_cast<unsigned char>(stem.back())) != 0;
@@ -41,29 +47,49 @@ bool ends_in_digit(const fs::path& path) {
 }  // namespace
 
 std::vector<FileChoice> animations_in(const std::string& folder) {
-  std::vector<FileChoice> baked, gltf, meshes;
+  std::vector<FileChoice> baked, gltf, for_assimp, meshes;
   std::size_t poses = 0;
   const std::vector<fs::path> files = files_in(folder);
   for (const fs::path& file : files) {
-    const std::string extension = lower_extension(file), name = file.filename().string();
-    if (extension == ".mdk") baked.push_back({name, {file.string()}});
-    if (extension == ".glb" || extension == ".gltf") gltf.push_back({name, {file.string()}});
-    if (extension != ".obj" && extension != ".ply") continue;
-    bool has_cache = false;
-    for (const char* cache : {".pc2", ".mdd"}) {
-      const fs::path beside = fs::path(file).replace_extension(cache);
-      if (!std::ranges::binary_search(files, beside)) continue;
-      meshes.push_back(
-          {name + " + " + beside.filename().string(), {file.string(), beside.string()}});
-      has_cache = true;
+    const FileChoice alone{file.filename().string(), {file.string()}};
+    switch (file_kind(file.string())) {
+      case FileKind::kBaked:
+        baked.push_back(alone);
+        break;
+      case FileKind::kGltf:
+        gltf.push_back(alone);
+        break;
+      case FileKind::kForAssimp:
+        if (has_assimp()) for_assimp.push_back(alone);
+        break;
+      case FileKind::kMesh: {
+        std::vector<FileChoice> moved = with_caches(file, files);
+        if (moved.empty() && ends_in_digit(file)) ++poses;
+        std::ranges::move(moved, std::back_inserter(meshes));
+        break;
+      }
+      case FileKind::kPointCache:
+      case FileKind::kOther:
+        break;
     }
-    if (!has_cache && ends_in_digit(file)) ++poses;
   }
   std::vector<FileChoice> all = std::move(baked);
-  all.insert(all.end(), gltf.begin(), gltf.end());
-  all.insert(all.end(), meshes.begin(), meshes.end());
+  for (std::vector<FileChoice>* kind : {&gltf, &for_assimp, &meshes})
+    std::ranges::move(*kind, std::back_inserter(all));
   if (poses > 1) all.push_back({std::to_string(poses) + " poses, one animation", {folder}});
   return all;
+}
+
+std::string openable_extensions() {
+  std::string text;
+  const auto add = [&](FileKind kind) {
+    for (const std::string_view extension : extensions_of(kind))
+      text.append(text.empty() ? "" : ", ").append(extension);
+  };
+  add(FileKind::kBaked);
+  add(FileKind::kGltf);
+  if (has_assimp()) add(FileKind::kForAssimp);
+  return text;
 }
 
 }  // namespace mdk

@@ -1,24 +1,17 @@
 #include "viewer/scene/scene_loader.h"
 
-#include <algorithm>
-#include <cctype>
 #include <cerrno>
 #include <chrono>
 #include <cstdlib>
 #include <cstring>
 #include <utility>
 
+#include "formats/file_kind.h"
+
 namespace mdk {
 namespace {
 
 namespace fs = std::filesystem;
-
-bool is_baked(const std::string& path) {
-  std::string extension = fs::path(path).extension().string();
-  std::ranges::transform(extension, extension.begin(),
-                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension == ".mdk";
-}
 
 /// A folder for one file that is mapped at once and need not have a name any longer.
 class ScratchFolder {
@@ -38,6 +31,24 @@ class ScratchFolder {
  private:
   std::string path_;
 };
+
+constexpr std::uint64_t kMostCopiedBytes = std::uint64_t{32} << 20;
+
+/// A small file is copied first, so that what others write into it in place, by cp for instance,
+/// pulls nothing away from under the picture. Large ones are mapped as they are.
+std::shared_ptr<const MdkFile> open_baked(const std::string& path) {
+  auto file = std::make_shared<const MdkFile>(path);  // errors name this one
+  if (file->file_bytes() > kMostCopiedBytes) return file;
+  try {
+    const ScratchFolder folder;
+    const std::string copy = folder.file(fs::path(path).filename().string());
+    fs::copy_file(path, copy);
+    return std::make_shared<const MdkFile>(copy);
+  } catch (const Error&) {
+  } catch (const fs::filesystem_error&) {
+  }
+  return file;  // where there is no room for a copy
+}
 
 }  // namespace
 
@@ -121,8 +132,8 @@ void SceneLoader::run(const std::vector<std::string>& paths, Reason reason) {
 }
 
 std::shared_ptr<const MdkFile> SceneLoader::open(const std::vector<std::string>& paths) {
-  return paths.size() == 1 && is_baked(paths.front())
-             ? std::make_shared<const MdkFile>(paths.front())
+  return paths.size() == 1 && file_kind(paths.front()) == FileKind::kBaked
+             ? open_baked(paths.front())
              : bake(paths);
 }
 
