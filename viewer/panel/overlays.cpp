@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <string>
 
+#include "formats/file_kind.h"
 #include "viewer/panel/file_menu.h"
 #include "viewer/panel/ui_parts.h"
 
@@ -14,12 +15,24 @@ constexpr ImGuiWindowFlags kFloating = ImGuiWindowFlags_NoTitleBar | ImGuiWindow
                                        ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoNav |
                                        ImGuiWindowFlags_NoFocusOnAppearing;
 
-void centered_text(const char* text, ImFont* font, ImU32 color) {
+constexpr float kHelpWidth = 580;  // on an ordinary display
+
+/// Each line in the middle of the window, and no wider than it.
+void centered_text(const std::string& text, ImFont* font, ImU32 color) {
   ImGui::PushFont(font);
-  const float width = ImGui::CalcTextSize(text).x;
-  ImGui::SetCursorPosX((ImGui::GetWindowSize().x - width) / 2);
   ImGui::PushStyleColor(ImGuiCol_Text, color);
-  ImGui::TextUnformatted(text);
+  const float room = ImGui::GetContentRegionAvail().x;
+  const float scale = ImGui::GetFontSize() / font->FontSize;
+  const char *at = text.c_str(), *const end = at + text.size();
+  while (at < end) {
+    const char* const stop =
+        std::max(at + 1, font->CalcWordWrapPositionA(scale, at, end, std::max(room, 1.0f)));
+    const float width = ImGui::CalcTextSize(at, stop).x;
+    ImGui::SetCursorPosX((ImGui::GetWindowSize().x - width) / 2);
+    ImGui::TextUnformatted(at, stop);
+    at = stop;
+    while (at < end && *at == ' ') ++at;
+  }
   ImGui::PopStyleColor();
   ImGui::PopFont();
 }
@@ -32,7 +45,11 @@ void draw_welcome(const Rect& picture, const Theme& theme) {
   ImGui::Begin("##welcome", nullptr, kFloating | ImGuiWindowFlags_NoInputs);
   centered_text("Drop an animation here", theme.fonts.large, text_color());
   ImGui::Spacing();
-  centered_text(".mdk opens at once; .glb, .gltf, or an .obj with its .pc2 or .mdd is baked first",
+  centered_text(".mdk opens at once", theme.fonts.text, dim_color());
+  centered_text(has_assimp()
+                    ? ".glb, .gltf, .fbx, .dae and more, or an .obj with its .pc2 or .mdd, "
+                      "are baked first"
+                    : ".glb, .gltf, or an .obj with its .pc2 or .mdd, are baked first",
                 theme.fonts.text, dim_color());
   ImGui::Spacing();
   centered_text("To keep what is baked", theme.fonts.text, dim_color());
@@ -105,9 +122,14 @@ void draw_notice(const Rect& picture, const Theme& theme, const std::string& not
   ImGui::PopStyleColor();
 }
 
+// In the middle of the picture where that is wide enough, else of the window; it scrolls where the
+// window is too small for all.
 void draw_help(const Rect& picture, const Theme& theme, UiResult& result) {
-  ImGui::SetNextWindowPos({picture.x + picture.width / 2, picture.y + picture.height / 2},
+  const ImVec2 window = ImGui::GetIO().DisplaySize;
+  const bool fits = picture.width >= kHelpWidth * theme.scale;
+  ImGui::SetNextWindowPos({fits ? picture.x + picture.width / 2 : window.x / 2, window.y / 2},
                           ImGuiCond_Always, {0.5f, 0.5f});
+  ImGui::SetNextWindowSizeConstraints({0, 0}, {std::max(1.0f, window.x), std::max(1.0f, window.y)});
   ImGui::PushStyleColor(ImGuiCol_WindowBg, floating_color());
   ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 10 * theme.scale);
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(24 * theme.scale, 18 * theme.scale));
@@ -126,8 +148,9 @@ void draw_help(const Rect& picture, const Theme& theme, UiResult& result) {
     }
     ImGui::EndTable();
   }
+  const ImVec2 corner = ImGui::GetWindowPos(), size = ImGui::GetWindowSize();
+  result.widgets["help-overlay"] = {corner.x, corner.y, size.x, size.y};
   ImGui::End();
-  result.widgets["help-overlay"] = {picture.x, picture.y, picture.width, picture.height};
   ImGui::PopStyleVar(2);
   ImGui::PopStyleColor();
 }

@@ -12,8 +12,8 @@
 namespace mdk {
 namespace {
 
-constexpr float kLeastPageHeight = 160;
-constexpr float kFooterHeight = 176;  // without a note
+constexpr float kLeastPageHeight = 160, kGoodPageHeight = 240;
+constexpr float kFooterHeight = 176, kShortFooterHeight = 72;  // without a note
 
 void draw_header(const Theme& theme, const ViewState& state, UiResult& result) {
   const float help_width = ImGui::GetFrameHeight();
@@ -21,7 +21,7 @@ void draw_header(const Theme& theme, const ViewState& state, UiResult& result) {
   ImGui::AlignTextToFramePadding();
   ImGui::TextUnformatted(state.file ? state.file_name.c_str() : "No file");
   ImGui::PopFont();
-  if (state.file && ImGui::IsItemHovered()) ImGui::SetTooltip("%s", state.file->path().c_str());
+  if (state.file && ImGui::IsItemHovered()) ImGui::SetTooltip("%s", state.path.c_str());
   ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - help_width);
   if (ImGui::Button("?", {help_width, 0})) result.actions.push_back({Command::kToggleHelp});
   record(result.widgets, "help");
@@ -82,14 +82,17 @@ std::string note_of(const ViewState& state) {
   return "Chosen: " + state.last_frame->note;
 }
 
-float footer_height(const Theme& theme, const std::string& note) {
-  if (note.empty()) return kFooterHeight * theme.scale;
+float note_height(const std::string& note) {
+  if (note.empty()) return 0;
   const float wrap = ImGui::GetContentRegionAvail().x;
-  return kFooterHeight * theme.scale + ImGui::CalcTextSize(note.c_str(), nullptr, false, wrap).y +
+  return ImGui::CalcTextSize(note.c_str(), nullptr, false, wrap).y +
          ImGui::GetStyle().ItemSpacing.y;
 }
 
-void draw_footer(const Theme& theme, const ViewState& state, UiResult& result) {
+/// Where there is little room, the page needs it more than the charts do.
+enum class Footer { kWhole, kShort };
+
+void draw_footer(const Theme& theme, const ViewState& state, Footer footer, UiResult& result) {
   heading(theme, "LAST FRAME");
   if (!state.last_frame) {
     ImGui::TextDisabled("none yet");
@@ -112,13 +115,14 @@ void draw_footer(const Theme& theme, const ViewState& state, UiResult& result) {
                                             {"update", stats.update_ms},
                                             {"trace", stats.trace_ms},
                                             {"shade", stats.shade_ms}};
-  draw_stage_bar(theme, stages);
+  if (footer == Footer::kWhole) draw_stage_bar(theme, stages);
   if (const std::string note = note_of(state); !note.empty()) {
     ImGui::PushTextWrapPos(0);
     ImGui::TextDisabled("%s", note.c_str());
     ImGui::PopTextWrapPos();
     record(result.widgets, "chosen");
   }
+  if (footer == Footer::kShort) return;
   draw_history_plot(theme, state.history);
   record(result.widgets, "history");
 }
@@ -135,9 +139,12 @@ void draw_side_panel(const Rect& place, const Theme& theme, ViewState& state, Ui
   draw_header(theme, state, result);
   draw_tab_bar(theme, state, result);
 
-  const float room = ImGui::GetContentRegionAvail().y - ImGui::GetStyle().ItemSpacing.y;
-  const float height =
-      std::max(kLeastPageHeight * theme.scale, room - footer_height(theme, note_of(state)));
+  const float room = ImGui::GetContentRegionAvail().y - ImGui::GetStyle().ItemSpacing.y -
+                     note_height(note_of(state));
+  const bool has_room = room >= (kGoodPageHeight + kFooterHeight) * theme.scale;
+  const Footer footer = has_room ? Footer::kWhole : Footer::kShort;
+  const float footer_height = (has_room ? kFooterHeight : kShortFooterHeight) * theme.scale;
+  const float height = std::max(kLeastPageHeight * theme.scale, room - footer_height);
   // A page of its own for each tab, so that each keeps its place.
   ImGui::BeginChild(std::string(panel_tab_id(state.tab)).c_str(), {0, height});
   draw_page(theme, state, result);
@@ -146,7 +153,7 @@ void draw_side_panel(const Rect& place, const Theme& theme, ViewState& state, Ui
   result.widgets["page-content"] = {corner.x, corner.y - ImGui::GetScrollY(), size.x,
                                     ImGui::GetCursorPosY() - ImGui::GetStyle().ItemSpacing.y};
   ImGui::EndChild();
-  draw_footer(theme, state, result);
+  draw_footer(theme, state, footer, result);
   ImGui::End();
 }
 

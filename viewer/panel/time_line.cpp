@@ -7,6 +7,7 @@
 
 #include "viewer/panel/time_track.h"
 #include "viewer/panel/ui_parts.h"
+#include "viewer/state/time_line_rows.h"
 
 namespace mdk {
 namespace {
@@ -27,18 +28,21 @@ void draw_transport(const Theme& theme, const Playback& playback, UiResult& resu
     if (icon_button(id.c_str(), icon, size)) result.actions.push_back({command});
     record(result.widgets, name);
     if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", tip);
-    ImGui::SameLine(0, 3 * theme.scale);
   };
+  const auto next = [&] { ImGui::SameLine(0, 3 * theme.scale); };
   button("start", Icon::kStart, Command::kStart, "To the start (Home)");
+  next();
   button("previous-key", Icon::kPreviousKey, Command::kPreviousKey, "Previous key (Left)");
+  next();
   button("play", playback.playing() ? Icon::kPause : Icon::kPlay, Command::kPlayPause,
          playback.playing() ? "Pause (Space)" : "Play (Space)");
+  next();
   button("next-key", Icon::kNextKey, Command::kNextKey, "Next key (Right)");
+  next();
   button("end", Icon::kEnd, Command::kEnd, "To the end (End)");
 }
 
 void draw_choices(const Theme& theme, Playback& playback, UiResult& result) {
-  ImGui::SameLine(0, 12 * theme.scale);
   ImGui::SetNextItemWidth(100 * theme.scale);
   const auto loop = static_cast<std::size_t>(playback.loop());
   if (ImGui::BeginCombo("##loop", kLoops[loop])) {
@@ -79,7 +83,7 @@ void draw_choices(const Theme& theme, Playback& playback, UiResult& result) {
   record(result.widgets, "clip");
 }
 
-// The time can be typed; Enter goes there.
+// The time can be typed; Enter goes there. At the right end of the row that has been begun.
 void draw_time_entry(const Theme& theme, Playback& playback, UiResult& result) {
   if (playback.clips().empty()) return;
   std::array<char, 96> text{};
@@ -87,21 +91,25 @@ void draw_time_entry(const Theme& theme, Playback& playback, UiResult& result) {
                 playback.key() + 1, playback.clips()[playback.clip()].key_times.size());
   const float entry = ImGui::CalcTextSize("0000.000").x + 2 * ImGui::GetStyle().FramePadding.x;
   const float gap = 6 * theme.scale;
-  const float width = entry + gap + ImGui::CalcTextSize(text.data()).x;
-  const float right = ImGui::GetWindowContentRegionMax().x - width;
-  ImGui::SameLine();
-  if (right < ImGui::GetCursorPosX() + 8 * theme.scale) {  // no room: leave it out whole
+  ImGui::SameLine(0, 12 * theme.scale);
+  const float left = ImGui::GetCursorPosX(), right = ImGui::GetWindowContentRegionMax().x;
+  const float with_text = right - (entry + gap + ImGui::CalcTextSize(text.data()).x);
+  const bool has_text = with_text >= left;
+  if (right - entry < left) {  // no room: leave it out whole
     ImGui::NewLine();
     return;
   }
-  ImGui::SetCursorPosX(right);
+  ImGui::SetCursorPosX(has_text ? with_text : right - entry);
   ImGui::SetNextItemWidth(entry);
   double time = playback.time();
   if (ImGui::InputDouble("##time-entry", &time, 0, 0, "%.3f",
                          ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll))
     playback.seek(time);
   record(result.widgets, "time-entry");
-  if (ImGui::IsItemHovered()) ImGui::SetTooltip("Seconds; type a time and press Enter");
+  if (ImGui::IsItemHovered())
+    ImGui::SetTooltip("Seconds; type a time and press Enter%s%s", has_text ? "" : "\n",
+                      has_text ? "" : text.data());
+  if (!has_text) return;
   ImGui::SameLine(0, gap);
   ImGui::AlignTextToFramePadding();
   ImGui::TextDisabled("%s", text.data());
@@ -117,9 +125,12 @@ void draw_time_line(const Rect& place, const Theme& theme, ViewState& state, UiR
                    ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoBringToFrontOnFocus |
                    ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse |
                    ImGuiWindowFlags_NoNav);
+  const bool wraps = time_line_wraps(place.width, theme.scale);
   draw_transport(theme, state.playback, result);
+  if (wraps) draw_time_entry(theme, state.playback, result);
+  if (!wraps) ImGui::SameLine(0, 12 * theme.scale);
   draw_choices(theme, state.playback, result);
-  draw_time_entry(theme, state.playback, result);
+  if (!wraps) draw_time_entry(theme, state.playback, result);
   draw_time_track(theme, state, result);
   ImGui::End();
 }
