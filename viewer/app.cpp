@@ -8,6 +8,8 @@
 #include <iostream>
 #include <utility>
 
+#include "common/trace/color.h"
+#include "common/trace/shading.h"
 #include "common/trace/technique.h"
 #include "viewer/panel/comparison_view.h"
 #include "viewer/panel/overlays.h"
@@ -35,6 +37,7 @@ App::App(const ViewerOptions& options)
     : options_(options),
       session_path_(session_path(options)),
       saved_(read_session(session_path_)),
+      fonts_(static_cast<float>(saved_.settings.text_percent) / 100),
       loader_([this] { wake(); }),
       export_([this] { wake(); }),
       worker_([this] { wake(); }) {
@@ -71,7 +74,7 @@ WindowSize App::window_size() const {
 
 void App::open_window() {
   window_.emplace(window_size(),
-                  options_.size || saved_.window ? SizeUnit::kExact : SizeUnit::kScaled);
+                  options_.size || saved_.window ? SizeUnit::kExact : SizeUnit::kScaled, fonts_);
   can_wake_ = true;
   theme_ = make_theme(ui_scale(), shape().pixel_ratio);
   blit_.emplace();
@@ -237,9 +240,19 @@ void App::show_finished_frame() {
   upload_picture();
 }
 
+// What stands out does so in the window alone: the picture itself, which is saved, stays.
 void App::upload_picture() {
-  const Picture& picture = shown_.picture();
-  blit_->upload(picture.pixels, picture.width, picture.height);
+  highlighted_ = state_.clusters.hovered;
+  const Picture& plain = shown_.picture();
+  if (plain.pixels.empty()) return;
+  if (!highlighted_) {
+    blit_->upload(plain.pixels, plain.width, plain.height);
+    return;
+  }
+  const Cluster& cluster = state_.model()->clusters[*highlighted_];
+  const Picture marked = shown_.with(
+      {cluster.first_triangle, cluster.triangle_count, pack_srgb(cluster_color(*highlighted_))});
+  blit_->upload(marked.pixels, marked.width, marked.height);
 }
 
 void App::update_shown_rate() {
@@ -362,11 +375,9 @@ void App::draw() {
   follow_display();
   set_colors(state_.settings.colors);
   window_->begin_frame();
-  if (shown_.arrange(state_.compare)) upload_picture();
-  blit_->draw(picture_pixels(), window_->framebuffer_height());
-
   UiResult result;
   const Layout places = layout();
+  state_.clusters.hovered.reset();
   if (state_.panel == PanelMode::kShown) {
     draw_side_panel(places.side_panel, theme_, state_, result);
     draw_time_line(places.time_line, theme_, state_, result);
@@ -379,6 +390,8 @@ void App::draw() {
   const bool steered = state_.file && steer_by_mouse(state_.camera, places.picture);
   if (pick_by_mouse(state_, places.picture)) redraws_ = kSettlingDraws;
   motion_ = steered || state_.playback.scrubbing() ? Motion::kDragging : Motion::kStill;
+  if (shown_.arrange(state_.compare) || highlighted_ != state_.clusters.hovered) upload_picture();
+  blit_->draw(picture_pixels(), window_->framebuffer_height());
   window_->end_frame();
 
   widgets_ = std::move(result.widgets);

@@ -24,6 +24,7 @@
 #include "viewer/saved_session.h"
 #include "viewer/scene/scene_loader.h"
 #include "viewer/state/view_state.h"
+#include "viewer/window/font_book.h"
 #include "viewer/window/texture_blit.h"
 #include "viewer/window/window.h"
 
@@ -102,7 +103,8 @@ class App {
   ViewerOptions options_;
   std::string session_path_;  ///< empty: nothing is kept
   SavedSession saved_;
-  WindowShape expected_shape_;    ///< while there is no window
+  WindowShape expected_shape_;  ///< while there is no window
+  FontBook fonts_;
   std::optional<Window> window_;  // before the loader and the worker, who wake it
   std::optional<TextureBlit> blit_;
   std::atomic<bool> can_wake_ = false;
@@ -128,6 +130,7 @@ class App {
   double last_activity_time_ = 0;  ///< of the user
   double full_picture_ms_ = 0;     ///< the last frame's time, scaled to full resolution
   ShownPicture shown_;
+  std::optional<std::uint32_t> highlighted_;  ///< cluster, in what was uploaded last
   std::deque<double> shown_times_;
   std::uint64_t frames_shown_ = 0, window_draws_ = 0;
 

@@ -6,6 +6,7 @@
 
 #include "formats/mdk_writer.h"
 #include "tests/viewer/mdview_gui.h"
+#include "tests/viewer/mdview_title.h"
 #include "tests/viewer/obj_sources.h"
 #include "tests/viewer/waving_bar.h"
 #include "tests/viewer/x_clipboard.h"
@@ -32,7 +33,7 @@ TEST_F(MdviewGui, ADroppedGltfIsBakedAndOpened) {
   const auto session = start({"--size", "800x600"});
   session->wait_for_window();
   drop_file(server_->display(), "mdview", folder_.file("triangle.gltf"));
-  session->xdotool({"sleep", "4"});
+  wait_for_file(*session, "triangle.gltf");
   const json state = session->quit().state;
   EXPECT_EQ(state["file"], folder_.file("triangle.gltf")) << state["error"];
   EXPECT_GT(state["last_frame"]["hits"], 1000);
@@ -69,14 +70,61 @@ TEST_F(MdviewGui, WhileASourceIsBakedTheRestIsUsableAndTheBakeCanBeCancelled) {
   EXPECT_TRUE(state["picked"].is_null()) << "the click went to the button alone";
 }
 
+TEST_F(MdviewGui, AfterACancelAnotherBakeComesToItsEnd) {
+  write_text("large.obj", large_obj(400));
+  write_text("square.obj", kSquare);
+  const auto session = start({"--size", "800x600"});
+  session->wait_for_window();
+  drop_file(server_->display(), "mdview", folder_.file("large.obj"));
+  session->xdotool({"sleep", "0.7"});
+  session->key("Escape");
+  drop_file(server_->display(), "mdview", folder_.file("square.obj"));
+  wait_for_file(*session, "square.obj");
+  const json state = session->quit().state;
+  EXPECT_TRUE(state["error"].is_null()) << state["error"];
+  EXPECT_TRUE(state["baking"].is_null());
+  EXPECT_GT(state["last_frame"]["hits"], 1000);
+}
+
+TEST_F(MdviewGui, OfManyQuickDropsTheLastCounts) {
+  write_text("large.obj", large_obj(400));
+  write_text("bad.mdk", "no model at all");
+  for (const char* name : {"a.mdk", "b.mdk", "last.mdk"})
+    std::filesystem::copy(folder_.file("bar.mdk"), folder_.file(name));
+  const auto session = start({"--size", "800x600"});
+  session->wait_for_window();
+  for (const char* name : {"a.mdk", "large.obj", "b.mdk", "bad.mdk", "large.obj", "last.mdk"})
+    drop_file(server_->display(), "mdview", folder_.file(name));
+  wait_for_file(*session, "last.mdk");
+  const json state = session->quit().state;
+  EXPECT_EQ(state["file"], folder_.file("last.mdk"));
+  EXPECT_TRUE(state["error"].is_null()) << state["error"];
+  EXPECT_TRUE(state["baking"].is_null());
+  EXPECT_GT(state["last_frame"]["hits"], 1000);
+}
+
+TEST_F(MdviewGui, AFileThatIsOverwrittenByGarbageStaysOpenAndThatIsSaid) {
+  const auto session = start_on_bar();
+  session->key("space");
+  write_text("bar.mdk", "garbage, written into the open file");
+  session->xdotool({"sleep", "2.5"});
+  ASSERT_TRUE(session->running());
+  session->key("space");
+  session->key("3");
+  const json state = session->quit().state;
+  EXPECT_THAT(state["error"].get<std::string>(), HasSubstr("not an .mdk file"));
+  EXPECT_EQ(state["file"], "bar.mdk");
+  EXPECT_EQ(state["last_frame"]["technique"], "static-kdtree");
+  EXPECT_GT(state["last_frame"]["hits"], 500);
+}
+
 TEST_F(MdviewGui, WhatWasBakedIsKeptBesideItsSource) {
   write_text("square.obj", kSquare);
   const std::vector<std::string> words = {"square.obj", "--size", "1280x800", "--tab", "file"};
   learn_widgets(words);
   const auto keep = [&] {
     const auto session = start(words);
-    session->wait_for_window();
-    session->xdotool({"sleep", "2"});
+    wait_for_file(*session, "square.obj");
     session->click(in_widget("keep-baked"));
     return session->quit().state;
   };

@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "tests/viewer/mdview_gui.h"
+#include "tests/viewer/mdview_title.h"
 #include "tests/viewer/x_drop.h"
 
 namespace mdk::test {
@@ -93,7 +94,7 @@ TEST_F(MdviewGui, ARecentFileIsOpenedFromTheMenuAndAPathCanBeTyped) {
   session->wait_for_window();
   session->key("l");
   session->click(in_widget("choice:0"));
-  session->xdotool({"sleep", "0.5"});
+  wait_for_file(*session, "bar.mdk");
   auto state = session->quit().state;
   EXPECT_EQ(state["file"], folder_.file("bar.mdk"));
   EXPECT_TRUE(state["file_menu"].is_null());
@@ -103,7 +104,7 @@ TEST_F(MdviewGui, ARecentFileIsOpenedFromTheMenuAndAPathCanBeTyped) {
   typing->key("l");
   typing->xdotool({"type", "--delay", "60", "bar.mdk"});
   typing->xdotool({"key", "Return"});
-  typing->xdotool({"sleep", "0.5"});
+  wait_for_file(*typing, "bar.mdk");
   EXPECT_EQ(typing->quit().state["file"], "bar.mdk");
 
   const auto closing = start(words);
@@ -122,14 +123,15 @@ TEST_F(MdviewGui, ADroppedFolderIsOfferedOrOpenedOrRefused) {
   fs::copy(folder_.file("bar.mdk"), folder_.file("one/bar.mdk"));
   fs::copy(folder_.file("bar.mdk"), folder_.file("two/a.mdk"));
   fs::copy(folder_.file("bar.mdk"), folder_.file("two/b.mdk"));
-  const auto drop = [&](const char* name) {
+  const auto drop = [&](const char* name, const char* opened = nullptr) {
     const auto session = start({"--size", "800x600"});
     session->wait_for_window();
     drop_file(server_->display(), "mdview", folder_.file(name));
     session->xdotool({"sleep", "1"});
+    if (opened) wait_for_file(*session, opened);
     return session->close().state;
   };
-  EXPECT_EQ(drop("one")["file"], folder_.file("one/bar.mdk"));
+  EXPECT_EQ(drop("one", "bar.mdk")["file"], folder_.file("one/bar.mdk"));
   EXPECT_EQ(drop("two")["file_menu"], json::array({"a.mdk", "b.mdk"}));
   EXPECT_THAT(drop("none")["error"].get<std::string>(), HasSubstr("holds no animation"));
 }

@@ -6,7 +6,10 @@
 #include <cstdlib>
 #include <set>
 
+#include "common/motion/model.h"
+#include "common/trace/renderer.h"
 #include "common/trace/shading.h"
+#include "formats/mdk_view.h"
 #include "tests/viewer/mdview_gui.h"
 
 namespace mdk::test {
@@ -159,6 +162,67 @@ TEST_F(MdviewPages, TreeCellsAreThoseOfTheChosenDepth) {
   EXPECT_NE(picture_of(deep), few);
 }
 
+TEST_F(MdviewPages, ARowUnderThePointerMarksItsClusterInTheWindowAlone) {
+  look_at_tab("clusters");
+  const auto with_pointer_at = [&](Point at) {
+    const auto session = start_on_bar({"--tab", "clusters", "--camera", "0 0 9 0 0 0 0 1 0 40",
+                                       "--time", "0.37", "--screenshot", "window.png"});
+    session->xdotool({"mousemove", std::to_string(at.x), std::to_string(at.y), "sleep", "0.3"});
+    session->key("p");
+    return session->quit().state;
+  };
+  const json away = with_pointer_at({5, 5});
+  EXPECT_TRUE(away["clusters"]["hovered"].is_null());
+  const auto plain = picture_of(away);
+  const json state = with_pointer_at(in_widget("cluster:0", 0.3));
+  EXPECT_EQ(state["clusters"]["hovered"], 0);
+  EXPECT_EQ(state["render_command"], away["render_command"]);
+  EXPECT_EQ(read_png(folder_.file("bar-0001.png")).pixels, plain);
+  EXPECT_EQ(read_png(folder_.file("bar-0002.png")).pixels, plain) << "saved while it was marked";
+
+  const MdkFile file(folder_.file("bar.mdk"));
+  const Cluster& cluster = file.model().clusters[0];
+  FrameRequest request;
+  request.width = state["last_frame"]["width"];
+  request.height = state["last_frame"]["height"];
+  request.camera = {{0, 0, 9}, {0, 0, 0}, {0, 1, 0}, 40};
+  request.at = locate_time(file.model(), 0, 0.37);
+  Renderer renderer(file.model(), "fuzzy-bvh");
+  renderer.trace(request);
+  const auto marked = picture_of(state);
+  std::size_t inside = 0, tinted = 0, changed_outside = 0;
+  for (std::uint32_t y = 0; y < request.height; ++y)
+    for (std::uint32_t x = 0; x < request.width; ++x) {
+      const std::size_t i = static_cast<std::size_t>(y) * request.width + x;
+      const std::uint32_t triangle = renderer.hits().triangle(x, y);
+      const bool is_inside = triangle - cluster.first_triangle < cluster.triangle_count;
+      inside += is_inside;
+      (is_inside ? tinted : changed_outside) += marked[i] != plain[i];
+    }
+  EXPECT_GT(inside, 500u);
+  EXPECT_GT(tinted, inside * 99 / 100);
+  EXPECT_LT(changed_outside, plain.size() / 20) << "only the lines of its box";
+}
+
+TEST_F(MdviewPages, ASmallWindowHasEveryControlAndAllKeys) {
+  const auto session = start({"bar.mdk", "--size", "800x600"});
+  session->wait_for_window();
+  session->key("question");
+  const json widgets = session->quit().state["widgets"];
+  const auto inside = [&](const char* name) {
+    ASSERT_TRUE(widgets.contains(name)) << name;
+    const json& r = widgets[name];
+    EXPECT_GE(r[0], 0) << name;
+    EXPECT_GE(r[1], 0) << name;
+    EXPECT_LE(r[0].get<double>() + r[2].get<double>(), 800) << name;
+    EXPECT_LE(r[1].get<double>() + r[3].get<double>(), 600) << name;
+  };
+  for (const char* name : {"help-overlay", "play", "end", "loop", "speed", "clip", "time-entry"})
+    inside(name);
+  EXPECT_GT(widgets["clip"][2], 90);
+  EXPECT_GT(widgets["time-entry"][2], 60);
+}
+
 TEST_F(MdviewPages, ShowAllBringsHiddenClustersBack) {
   look_at_tab("clusters");
   const auto session = start_on_bar({"--tab", "clusters"});
@@ -188,6 +252,9 @@ TEST_F(MdviewPages, TextGrowsAndShrinksWhileTheWindowIsOpenAndIsRemembered) {
   EXPECT_NEAR(width(large, "page"), 1.5 * width(plain, "page"), 8);
   EXPECT_LT(width(large, "picture"), width(plain, "picture"));
   sized({"minus"}, 140);
+  const json largest = sized({"plus", "plus", "plus", "plus", "plus", "plus"}, 200);
+  EXPECT_GT(largest["page"][3], 400) << "the page keeps half of the panel";
+  EXPECT_TRUE(largest.contains("time-entry"));
 }
 
 }  // namespace

@@ -153,7 +153,6 @@ void draw_table(const Theme& theme, ViewState& state, UiResult& result) {
 }  // namespace
 
 void draw_clusters_tab(const Theme& theme, ViewState& state, UiResult& result) {
-  state.clusters.hovered.reset();
   draw_overlay_choices(theme, state, result);
   heading(theme, "CLUSTERS");
   if (!state.file) {

@@ -1,41 +1,11 @@
 #include "viewer/panel/style.h"
 
 #include <array>
-#include <filesystem>
+
+#include "viewer/window/font_book.h"
 
 namespace mdk {
 namespace {
-
-constexpr float kTextSize = 14.5f, kLargeSize = 25;
-
-// The first folder that has the family; where none has, ImGui's built-in font serves.
-constexpr std::array kFontFolders = {
-    "/usr/share/fonts/truetype/dejavu/",
-    "/usr/share/fonts/dejavu-sans-fonts/",
-    "/usr/share/fonts/TTF/",
-    "/usr/local/share/fonts/dejavu/",
-};
-
-// Latin, Greek and Cyrillic, for names in files, and the punctuation of our own sentences.
-constexpr std::array<ImWchar, 7> kNameGlyphs = {0x20, 0x17f, 0x370, 0x52f, 0x2010, 0x2027, 0};
-// The large font writes figures and words of ours alone. Every glyph is drawn before the first
-// frame.
-constexpr std::array<ImWchar, 3> kPlainGlyphs = {0x20, 0x7e, 0};
-
-// ImGui 1.86 aborts on a font file that is missing: ask before.
-ImFont* load(const char* file, float pixels, const ImWchar* glyphs) {
-  ImFontAtlas& atlas = *ImGui::GetIO().Fonts;
-  ImFontConfig config;
-  config.OversampleH = 2;
-  for (const char* folder : kFontFolders) {
-    const std::filesystem::path path = std::filesystem::path(folder) / file;
-    std::error_code ignored;
-    if (std::filesystem::is_regular_file(path, ignored))
-      return atlas.AddFontFromFileTTF(path.c_str(), pixels, &config, glyphs);
-  }
-  config.SizePixels = pixels;
-  return atlas.AddFontDefault(&config);
-}
 
 ImVec4 rgb(int r, int g, int b, float alpha = 1) {
   return {static_cast<float>(r) / 255, static_cast<float>(g) / 255, static_cast<float>(b) / 255,
@@ -107,10 +77,7 @@ Theme make_theme(float scale, float pixel_ratio) {
   Theme theme;
   theme.scale = scale;
   theme.pixel_ratio = pixel_ratio;
-  ImGui::GetIO().Fonts->Clear();
-  theme.fonts.text = load("DejaVuSans.ttf", kTextSize * pixels, kNameGlyphs.data());
-  theme.fonts.strong = load("DejaVuSans-Bold.ttf", kTextSize * pixels, kNameGlyphs.data());
-  theme.fonts.large = load("DejaVuSans.ttf", kLargeSize * pixels, kPlainGlyphs.data());
+  theme.fonts = load_fonts(*ImGui::GetIO().Fonts, pixels);
   ImGui::GetIO().FontGlobalScale = 1 / pixel_ratio;
 
   ImGuiStyle& style = ImGui::GetStyle() = ImGuiStyle();

@@ -5,6 +5,7 @@
 
 #include "common/trace/technique.h"
 #include "viewer/picture/comparison.h"
+#include "viewer/picture/highlight.h"
 
 namespace mdk {
 
@@ -74,6 +75,7 @@ FinishedFrame RenderWorker::render(RenderJob job) {
       open_part_ = job.part;
     }
     static_cast<TracedFrame&>(frame) = trace(renderer_, job, job.technique);
+    if (!job.survey) frame.triangles = triangles_of(renderer_->hits());
     if (job.against) {
       frame.second = trace(second_renderer_, job, *job.against);
       frame.difference = difference_of(

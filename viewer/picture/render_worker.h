@@ -50,6 +50,7 @@ struct TracedFrame {
 
 struct FinishedFrame : TracedFrame {
   RenderJob job;
+  std::vector<std::uint32_t> triangles;  ///< triangles_of() the picture
   std::string error;                  ///< a sentence where there is no picture, else empty
   std::optional<TracedFrame> second;  ///< of job.against
   PictureDifference difference;       ///< between the two

@@ -44,4 +44,9 @@ bool ShownPicture::arrange(const CompareSettings& settings) {
   return true;
 }
 
+Picture ShownPicture::with(const Highlight& highlight) const {
+  if (!frame_ || arranged_.mode == CompareMode::kDifference) return picture_;
+  return highlighted(picture_, frame_->triangles, frame_->job.request.width, highlight);
+}
+
 }  // namespace mdk

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "viewer/picture/comparison.h"
+#include "viewer/picture/highlight.h"
 #include "viewer/picture/render_worker.h"
 
 namespace mdk {
@@ -20,6 +21,9 @@ class ShownPicture {
 
   /// Empty (width 0) before the first frame.
   const Picture& picture() const { return picture_; }
+  /// The picture with some triangles made to stand out; as it is where it shows a difference, in
+  /// which nothing else may stand out.
+  Picture with(const Highlight& highlight) const;
 
  private:
   std::optional<FinishedFrame> frame_;

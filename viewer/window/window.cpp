@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "common/base/error.h"
+#include "viewer/window/font_book.h"
 
 namespace mdk {
 namespace {
@@ -62,7 +63,8 @@ struct Window::Events {
   }
 };
 
-Window::Window(const WindowSize& size, SizeUnit unit) : events_(std::make_unique<Events>()) {
+Window::Window(const WindowSize& size, SizeUnit unit, FontBook& fonts)
+    : events_(std::make_unique<Events>()) {
   if (!glfwInit()) throw no_window("mdview finds no display to open a window on");
   glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
   glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
@@ -87,7 +89,7 @@ Window::Window(const WindowSize& size, SizeUnit unit) : events_(std::make_unique
   install_callbacks(window_);
 
   IMGUI_CHECKVERSION();
-  ImGui::CreateContext();
+  ImGui::CreateContext(&fonts.atlas());
   ImGui::GetIO().IniFilename = nullptr;
   ImGui_ImplGlfw_InitForOpenGL(window_, true);
   ImGui_ImplOpenGL3_Init("#version 330 core");

@@ -15,6 +15,8 @@ struct GLFWwindow;
 
 namespace mdk {
 
+class FontBook;
+
 /// Whether a size counts pixels of an ordinary display and grows on a dense one.
 enum class SizeUnit { kExact, kScaled };
 
@@ -30,8 +32,9 @@ struct WindowShape {
 /// One per process. All of it for the main thread, except wake().
 class Window {
  public:
-  /// Throws Error (kIo) where there is no display or no OpenGL 3.3; the sentence says what to do.
-  Window(const WindowSize& size, SizeUnit unit);
+  /// `fonts` must outlive it. Throws Error (kIo) where there is no display or no OpenGL 3.3; the
+  /// sentence says what to do.
+  Window(const WindowSize& size, SizeUnit unit, FontBook& fonts);
   ~Window();
   Window(const Window&) = delete;
   Window& operator=(const Window&) = delete;
