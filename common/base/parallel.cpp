@@ -6,13 +6,26 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <atomic>
+#include <utility>
 
 namespace mdk {
 namespace {
 
-// Process-wide, as oneTBB's own limit of threads is: loops lie too deep to hand it down to each.
-std::atomic<void (*)()> loop_check = nullptr;
+// Of the thread, since loops lie too deep to hand it down to each.
+thread_local const std::function<void()>* loop_check = nullptr;
+
+// Threads that help with a loop check what its own thread checks, while they do.
+class InheritedCheck {
+ public:
+  explicit InheritedCheck(const std::function<void()>* check)
+      : own_(std::exchange(loop_check, check)) {}
+  ~InheritedCheck() { loop_check = own_; }
+  InheritedCheck(const InheritedCheck&) = delete;
+  InheritedCheck& operator=(const InheritedCheck&) = delete;
+
+ private:
+  const std::function<void()>* own_;
+};
 
 }  // namespace
 
@@ -24,12 +37,13 @@ ThreadLimit::ThreadLimit(int threads) {
 
 ThreadLimit::~ThreadLimit() { delete static_cast<tbb::global_control*>(control_); }
 
-LoopCheck::LoopCheck(void (*check)()) { loop_check = check; }
+LoopCheck::LoopCheck(std::function<void()> check)
+    : check_(std::move(check)), outer_(std::exchange(loop_check, &check_)) {}
 
-LoopCheck::~LoopCheck() { loop_check = nullptr; }
+LoopCheck::~LoopCheck() { loop_check = outer_; }
 
 void check_loop() {
-  if (void (*const check)() = loop_check) check();
+  if (loop_check) (*loop_check)();
 }
 
 int thread_count() {
@@ -42,7 +56,9 @@ void parallel_chunks(std::size_t n, std::size_t grain,
                      const std::function<void(std::size_t, std::size_t)>& body) {
   grain = std::max<std::size_t>(1, grain);
   const std::size_t chunks = (n + grain - 1) / grain;
+  const auto* const check = loop_check;
   const auto run_chunk = [&](std::size_t c) {
+    const InheritedCheck inherited(check);
     check_loop();
     body(c * grain, std::min(n, (c + 1) * grain));
   };

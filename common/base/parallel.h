@@ -20,15 +20,19 @@ class ThreadLimit {
   void* control_;
 };
 
-/// While it lives, every parallel loop calls `check` before each chunk, on any of its threads; what
-/// `check` throws ends the loop. So long work can be told to stop. One at a time; it counts for the
-/// whole process, as a ThreadLimit does.
+/// While it lives, the parallel loops of the thread that made it, and the loops inside of those,
+/// call `check` before each chunk, on any of their threads; what `check` throws ends the loop. So
+/// long work can be told to stop. Of nested ones the innermost counts.
 class LoopCheck {
  public:
-  explicit LoopCheck(void (*check)());
+  explicit LoopCheck(std::function<void()> check);
   ~LoopCheck();
   LoopCheck(const LoopCheck&) = delete;
   LoopCheck& operator=(const LoopCheck&) = delete;
+
+ private:
+  std::function<void()> check_;
+  const std::function<void()>* outer_;
 };
 
 /// Calls the check there is, for long work outside of parallel loops.

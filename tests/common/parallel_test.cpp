@@ -6,6 +6,7 @@
 #include <mutex>
 #include <set>
 #include <stdexcept>
+#include <thread>
 #include <vector>
 
 namespace mdk {
@@ -63,6 +64,25 @@ TEST(Parallel, ACheckEndsALoopBeforeItsNextChunkWhileItLives) {
     loop();
     EXPECT_EQ(chunks, 1020);
   }
+}
+
+TEST(Parallel, ACheckHoldsForLoopsWithinLoopsAndForNoOtherThread) {
+  const ThreadLimit limit(4);
+  std::atomic<int> checks = 0;
+  const auto nested = [] {
+    parallel_chunks(8, 1, [](std::size_t, std::size_t) {
+      parallel_chunks(8, 1, [](std::size_t, std::size_t) {});
+    });
+  };
+  {
+    const LoopCheck check([&] { ++checks; });
+    std::thread(nested).join();
+    EXPECT_EQ(checks, 0);
+    nested();
+    EXPECT_EQ(checks, 8 + 8 * 8);
+  }
+  nested();
+  EXPECT_EQ(checks, 8 + 8 * 8);
 }
 
 TEST(Parallel, ThreadLimitHolds) {
