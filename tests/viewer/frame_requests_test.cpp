@@ -178,5 +178,59 @@ TEST_F(RenderWorkerTest, CanBeDestroyedWhileItWorks) {
   }
 }
 
+TEST_F(RenderWorkerTest, OnlyWhatNobodyWaitsForIsOutdated) {
+  RenderJob other = job_;
+  EXPECT_FALSE(outdates(other, job_));
+  other.request.at = at_key(2);
+  other.request.camera.eye.x += 1;
+  other.request.shading = ShadingMode::kNormals;
+  other.request.width *= 2;
+  EXPECT_FALSE(outdates(other, job_));
+  EXPECT_TRUE(outdates(job_, other)) << "coarser";
+
+  other = job_;
+  other.technique = 1;
+  EXPECT_TRUE(outdates(other, job_));
+  other = job_;
+  other.against = 1;
+  EXPECT_TRUE(outdates(other, job_));
+  other = job_;
+  other.file.reset();
+  EXPECT_TRUE(outdates(other, job_));
+  other = job_;
+  other.survey = SurveyMark{};
+  EXPECT_TRUE(outdates(job_, other));
+  EXPECT_FALSE(outdates(other, job_));
+}
+
+/// Takes minutes: the bar fills it, and each pixel looks about by brute force.
+RenderJob endless(RenderJob job) {
+  for (std::size_t row = 0; row < technique_table().size(); ++row)
+    if (technique_table()[row].id == "brute-force") job.technique = row;
+  job.request.width = job.request.height = 4096;
+  job.request.shading = ShadingMode::kLit;
+  job.request.occlusion_rays = 64;
+  return job;
+}
+
+TEST_F(RenderWorkerTest, LeavesOffALatePictureWhereAnotherTechniqueIsAskedFor) {
+  RenderWorker worker([] {});
+  worker.request(endless(job_));
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  EXPECT_TRUE(worker.busy());
+  worker.request(job_);
+  const FinishedFrame frame = wait_for_frame(worker);
+  EXPECT_TRUE(same_picture(frame.job, job_));
+  EXPECT_EQ(frame.error, "");
+  EXPECT_GT(frame.stats.hits, 0u);
+}
+
+TEST_F(RenderWorkerTest, DoesNotWaitForALatePictureWhenItEnds) {
+  RenderWorker worker([] {});
+  worker.request(endless(job_));
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  EXPECT_TRUE(worker.busy());
+}
+
 }  // namespace
 }  // namespace mdk

@@ -3,11 +3,18 @@
 #include <exception>
 #include <utility>
 
+#include "common/base/parallel.h"
 #include "common/trace/technique.h"
 #include "viewer/picture/comparison.h"
 #include "viewer/picture/highlight.h"
 
 namespace mdk {
+namespace {
+
+/// Thrown through the loops over a frame. Not an error: nobody waits for it.
+struct LeftOff {};
+
+}  // namespace
 
 bool same_picture(const RenderJob& a, const RenderJob& b) {
   return a.file == b.file && a.technique == b.technique && a.against == b.against &&
@@ -15,6 +22,15 @@ bool same_picture(const RenderJob& a, const RenderJob& b) {
          a.request.width == b.request.width && a.request.height == b.request.height &&
          a.request.shading == b.request.shading && a.request.samples == b.request.samples &&
          a.request.occlusion_rays == b.request.occlusion_rays && a.pose == b.pose;
+}
+
+bool outdates(const RenderJob& wanted, const RenderJob& old) {
+  const auto pixels = [](const RenderJob& job) {
+    return std::uint64_t{job.request.width} * job.request.height;
+  };
+  return wanted.file != old.file || wanted.technique != old.technique ||
+         wanted.against != old.against || wanted.part != old.part || pixels(wanted) < pixels(old) ||
+         (old.survey && !wanted.survey);
 }
 
 RenderWorker::RenderWorker(std::function<void()> on_finished)
@@ -32,6 +48,7 @@ RenderWorker::~RenderWorker() {
 void RenderWorker::request(RenderJob job) {
   {
     const std::lock_guard lock(mutex_);
+    outdated_ = in_work_ && outdates(job, *in_work_);
     waiting_ = std::move(job);
   }
   wake_.notify_one();
@@ -44,7 +61,7 @@ std::optional<FinishedFrame> RenderWorker::take_finished() {
 
 bool RenderWorker::busy() const {
   const std::lock_guard lock(mutex_);
-  return working_ || waiting_.has_value();
+  return in_work_ || waiting_;
 }
 
 void RenderWorker::run() {
@@ -52,12 +69,13 @@ void RenderWorker::run() {
   while (true) {
     wake_.wait(lock, [this] { return stopping_ || waiting_.has_value(); });
     if (stopping_) return;
-    RenderJob job = *std::exchange(waiting_, std::nullopt);
-    working_ = true;
+    in_work_ = std::exchange(waiting_, std::nullopt);
+    outdated_ = false;
     lock.unlock();
-    FinishedFrame frame = render(std::move(job));
+    std::optional<FinishedFrame> frame = render(*in_work_);
     lock.lock();
-    working_ = false;
+    in_work_.reset();
+    if (!frame) continue;
     finished_ = std::move(frame);
     lock.unlock();
     on_finished_();
@@ -65,12 +83,17 @@ void RenderWorker::run() {
   }
 }
 
-FinishedFrame RenderWorker::render(RenderJob job) {
+void RenderWorker::check() const {
+  if (stopping_ || (outdated_ && since_begun_.seconds() > kPatienceSeconds)) throw LeftOff{};
+}
+
+std::optional<FinishedFrame> RenderWorker::render(RenderJob job) {
+  since_begun_ = {};
+  const LoopCheck checked([this] { check(); });
   FinishedFrame frame;
   try {
     if (job.file != open_file_ || job.part != open_part_) {
-      renderer_.reset();
-      second_renderer_.reset();
+      drop_renderers();
       open_file_ = job.file;
       open_part_ = job.part;
     }
@@ -81,13 +104,20 @@ FinishedFrame RenderWorker::render(RenderJob job) {
       frame.difference = difference_of(
           {frame.pixels, frame.second->pixels, job.request.width, job.request.height});
     }
+  } catch (const LeftOff&) {
+    drop_renderers();
+    return {};
   } catch (const std::exception& failure) {
     frame.error = failure.what();
-    renderer_.reset();  // whatever state they were left in
-    second_renderer_.reset();
+    drop_renderers();
   }
   frame.job = std::move(job);
   return frame;
+}
+
+void RenderWorker::drop_renderers() {
+  renderer_.reset();
+  second_renderer_.reset();
 }
 
 TracedFrame RenderWorker::trace(std::unique_ptr<Renderer>& renderer, const RenderJob& job,

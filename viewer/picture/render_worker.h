@@ -2,6 +2,7 @@
 // job waits at a time, the latest; one finished frame waits to be taken, the latest.
 #pragma once
 
+#include <atomic>
 #include <condition_variable>
 #include <cstdint>
 #include <functional>
@@ -12,6 +13,7 @@
 #include <thread>
 #include <vector>
 
+#include "common/base/stopwatch.h"
 #include "common/trace/renderer.h"
 #include "formats/mdk_view.h"
 #include "viewer/scene/partial_model.h"
@@ -39,6 +41,11 @@ struct RenderJob {
 /// Whether both ask for the same pixels by the same technique; counting does not matter.
 bool same_picture(const RenderJob& a, const RenderJob& b);
 
+/// Whether nobody waits for `old` any more where `wanted` is asked for: another technique, file or
+/// part of it, a coarser picture, or any picture in place of a measurement. Another moment or
+/// camera is no reason: while these change without end, late pictures are better than none.
+bool outdates(const RenderJob& wanted, const RenderJob& old);
+
 /// What one technique made of a job.
 struct TracedFrame {
   FrameStats stats;
@@ -51,21 +58,25 @@ struct TracedFrame {
 struct FinishedFrame : TracedFrame {
   RenderJob job;
   std::vector<std::uint32_t> triangles;  ///< triangles_of() the picture
-  std::string error;                  ///< a sentence where there is no picture, else empty
-  std::optional<TracedFrame> second;  ///< of job.against
-  PictureDifference difference;       ///< between the two
+  std::string error;                     ///< a sentence where there is no picture, else empty
+  std::optional<TracedFrame> second;     ///< of job.against
+  PictureDifference difference;          ///< between the two
 };
 
 class RenderWorker {
  public:
+  /// How long an outdated frame may go on: to begin another costs its structures anew.
+  static constexpr double kPatienceSeconds = 0.2;
+
   /// `on_finished` is called from the worker's thread whenever a frame can be taken.
   explicit RenderWorker(std::function<void()> on_finished);
-  /// Waits for the frame in work.
+  /// Leaves off the frame in work.
   ~RenderWorker();
   RenderWorker(const RenderWorker&) = delete;
   RenderWorker& operator=(const RenderWorker&) = delete;
 
-  /// Starts the job when the present one is done; takes the place of one that has not started.
+  /// Starts the job when the present one is done, or outdated and late; takes the place of one that
+  /// has not started.
   void request(RenderJob job);
 
   /// The latest frame that was finished and not yet taken. Never waits for one.
@@ -76,7 +87,12 @@ class RenderWorker {
 
  private:
   void run();
-  FinishedFrame render(RenderJob job);
+  /// None where it was left off.
+  std::optional<FinishedFrame> render(RenderJob job);
+  /// Ends loops over a frame that is to be left off.
+  void check() const;
+  /// They begin anew with the next frame, whatever state they were left in.
+  void drop_renderers();
   /// By the renderer's own pose, so that both techniques of a comparison pay for one.
   TracedFrame trace(std::unique_ptr<Renderer>& renderer, const RenderJob& job,
                     std::size_t technique);
@@ -85,12 +101,13 @@ class RenderWorker {
   std::shared_ptr<const MdkFile> open_file_;  // the worker's own: what the renderers look at
   std::shared_ptr<const PartialModel> open_part_;
   std::unique_ptr<Renderer> renderer_, second_renderer_;
+  Stopwatch since_begun_;  // the frame in work
 
   mutable std::mutex mutex_;
   std::condition_variable wake_;
-  std::optional<RenderJob> waiting_;
+  std::optional<RenderJob> waiting_, in_work_;
   std::optional<FinishedFrame> finished_;
-  bool working_ = false, stopping_ = false;
+  std::atomic<bool> stopping_ = false, outdated_ = false;
   std::thread thread_;  // last: it uses everything above
 };
 
