@@ -25,8 +25,9 @@ TEST(FileKind, EachExtensionIsOfOneKindAndLeadsBackToIt) {
     EXPECT_FALSE(extensions_of(kind).empty());
     for (const std::string_view extension : extensions_of(kind)) {
       EXPECT_TRUE(seen.insert(extension).second) << extension;
-      EXPECT_EQ(file_kind("x" + std::string(extension)), kind) << extension;
-      EXPECT_EQ(lower_extension("X" + std::string(extension)), extension);
+      const std::string name = std::string("x").append(extension);
+      EXPECT_EQ(file_kind(name), kind) << extension;
+      EXPECT_EQ(lower_extension(name), extension);
     }
   }
   EXPECT_TRUE(extensions_of(FileKind::kOther).empty());
