@@ -8,7 +8,7 @@
 #include <thread>
 
 #include "common/base/isa.h"
-#include "formats/assimp_reader.h"
+#include "formats/file_kind.h"
 #include "tests/cli/baked_sample.h"
 #include "tests/cli/program_run.h"
 #include "tests/cli/sample_mesh.h"

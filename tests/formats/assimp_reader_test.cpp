@@ -7,6 +7,7 @@
 #include <numbers>
 #include <random>
 
+#include "formats/file_kind.h"
 #include "formats/image_writer.h"
 #include "tests/formats/assimp_samples.h"
 #include "tests/formats/expect_error.h"
