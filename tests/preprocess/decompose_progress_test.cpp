@@ -51,6 +51,8 @@ TEST(Decompose, OneLongSegmentIsNotSilentWhileItsBoxesAreMade) {
   sequence.vertex_count = 3000;
   for (std::uint32_t i = 0; i + 2 < sequence.vertex_count; i += 3)
     sequence.triangles.push_back({{i, i + 1, i + 2}});
+  sequence.appearance.materials.resize(1);
+  sequence.appearance.triangle_materials.assign(sequence.triangles.size(), 0);
   constexpr std::uint32_t kKeys = 3000;  // nine million positions
   for (std::uint32_t key = 0; key < kKeys; ++key) {
     sequence.key_times.push_back(key);
