@@ -60,9 +60,10 @@ TEST(Highlight, RefusesTrianglesOfAnotherPicture) {
 
 TEST(Highlight, TrianglesOfAPictureAreThoseOfItsHits) {
   const ModelStorage bar = waving_bar();
-  Renderer renderer(bar.view(), "fuzzy-bvh");
+  const Model model = bar.view();
+  Renderer renderer(model, "fuzzy-bvh");
   FrameRequest request;
-  request.camera = fit_camera(bar.view().bounds, 1);
+  request.camera = fit_camera(model.bounds, 1);
   request.width = 53;  // no whole number of tiles
   request.height = 37;
   renderer.render(request);
