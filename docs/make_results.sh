@@ -23,7 +23,7 @@ die() { printf 'make_results: %s\n' "$*" >&2; exit 1; }
 say() { printf '%(%H:%M:%S)T %s\n' -1 "$*" >&2; }
 [[ -x $mdprep && -x build/release/bin/make_sample ]] || die 'there is no build; run ./run build first'
 
-quick= only= results=docs/results step=all
+quick='' only='' results=docs/results step=all
 while (($#)); do
   case $1 in
     --quick) quick=-quick ;;

@@ -9,6 +9,7 @@
 # sequences/NAME.obj and NAME.pc2: real-cow real-crane real-elephant real-horse (default: all there are).
 # What was measured stays in build/release/decomposition: models not named keep their last figures.
 # Needs a build (./run build) and jq.
+# shellcheck disable=SC2016  # the $ in jq programs are jq's
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
