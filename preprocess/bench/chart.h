@@ -51,7 +51,7 @@ struct ChartSeries {
 };
 
 enum class Labels {
-  kNone,   ///< a legend elsewhere tells the series apart
+  kNone,   ///< a legend elsewhere names the series
   kAtEnd,  ///< each series is named at its last point: for a few
 };
 enum class Marks { kNone, kDots };

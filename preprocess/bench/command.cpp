@@ -39,7 +39,7 @@ struct BenchArguments {
   std::vector<std::string> from, compare;
   std::string commit, command;
   std::string json, csv, html, markdown;  ///< files; empty: not asked for
-  std::vector<std::string> quoting;       ///< documents whose marked texts are made anew
+  std::vector<std::string> quoting;       ///< documents whose marked texts are replaced
   ViewOptions view;
   MachineOptions machine;
   MessageOptions messages;
@@ -47,7 +47,7 @@ struct BenchArguments {
 
 // --- measuring ---
 
-/// All that can be told, and refused, before the first file is opened; the camera is the model's.
+/// All that can be refused before the first file is opened; the camera depends on the model.
 BenchConfig parse_config(const BenchArguments& arguments) {
   BenchConfig config;
   const ImageSize size = parse_image_size(arguments.view.size);
@@ -202,71 +202,55 @@ void run_bench(const BenchArguments& arguments) {
 
 // --- options ---
 
+/// Adds options that have an argument.
+auto option_adder(CLI::App& command) {
+  return [&](const char* name, const char* argument, auto& value, const std::string& help) {
+    return command.add_option(name, value, help)->type_name(argument);
+  };
+}
+
 void add_measuring_options(CLI::App& command, BenchArguments& arguments) {
-  command
-      .add_option("--techniques", arguments.techniques,
-                  "all, which leaves brute-force out, or some of\n" + technique_ids() +
-                      "\n(default: all). all,-ID,... leaves some out. Brute force judges the hits "
-                      "in any case.")
-      ->type_name("all|ID,...");
-  command
-      .add_option("--frames", arguments.frames,
-                  "How many keys to render, spread evenly over all clips, 1 to " +
-                      std::to_string(kFrameRange.highest) +
-                      ";\nno more than there are (default: 20).")
-      ->type_name("N");
-  command
-      .add_option("--rounds", arguments.rounds,
-                  "How often each frame is timed, 1 to " + std::to_string(kRoundRange.highest) +
-                      "; the fastest counts (default: 3).")
-      ->type_name("N");
-  command
-      .add_option("--judge", arguments.judge,
-                  "How many of the frames brute force judges, which is slow on large models\n"
-                  "(default: all).")
-      ->type_name("all|N|none");
+  const auto add = option_adder(command);
+  add("--techniques", "all|ID,...", arguments.techniques,
+      "all, which leaves brute-force out, or some of\n" + technique_ids() +
+          "\n(default: all). all,-ID,... leaves some out. Brute force judges the hits in any "
+          "case.");
+  add("--frames", "N", arguments.frames,
+      "How many keys to render, spread evenly over all clips, 1 to " +
+          std::to_string(kFrameRange.highest) + ";\nno more than there are (default: 20).");
+  add("--rounds", "N", arguments.rounds,
+      "How often each frame is timed, 1 to " + std::to_string(kRoundRange.highest) +
+          "; the fastest counts (default: 3).");
+  add("--judge", "all|N|none", arguments.judge,
+      "How many of the frames brute force judges, which is slow on large models\n"
+      "(default: all).");
 }
 
 void add_result_options(CLI::App& command, BenchArguments& arguments) {
-  command
-      .add_option("--from", arguments.from,
-                  "Measure nothing: take the results that --json wrote. Several become one: other\n"
-                  "models, instruction sets and threads stand side by side, and more of the same\n"
-                  "count as further rounds.")
-      ->type_name("RESULT.json...")
+  const auto add = option_adder(command);
+  add("--from", "RESULT.json...", arguments.from,
+      "Measure nothing: take the results that --json wrote. Several become one: other\n"
+      "models, instruction sets and threads stand side by side, and more of the same\n"
+      "count as further rounds.")
       ->expected(1, -1);
-  command
-      .add_option("--compare", arguments.compare,
-                  "Measure nothing: print how the second of two results differs from the first,\n"
-                  "as ratios with their spread. What lies within the spread is called the same.")
-      ->type_name("OLD.json NEW.json")
+  add("--compare", "OLD.json NEW.json", arguments.compare,
+      "Measure nothing: print how the second of two results differs from the first,\n"
+      "as ratios with their spread. What lies within the spread is called the same.")
       ->expected(2);
-  command
-      .add_option("--json", arguments.json,
-                  "Write medians and every frame as JSON (mdprep-bench/1).")
-      ->type_name("FILE");
-  command.add_option("--csv", arguments.csv, "Write the medians as CSV.")->type_name("FILE");
-  command
-      .add_option("--html", arguments.html,
-                  "Write tables and plots as one page that needs nothing else. Put NAME.json, the\n"
-                  "report of the bake, beside NAME.mdk for what baking cost.")
-      ->type_name("FILE");
-  command
-      .add_option("--markdown", arguments.markdown,
-                  "Write the same as a document, and its pictures into a folder beside it.")
-      ->type_name("FILE.md");
-  command
-      .add_option("--quote", arguments.quoting,
-                  "Make the texts of documents anew that stand between the markers\n"
-                  "<!-- bench: techniques MODEL... --> and <!-- end of bench -->.")
-      ->type_name("FILE...")
+  add("--json", "FILE", arguments.json, "Write medians and every frame as JSON (mdprep-bench/1).");
+  add("--csv", "FILE", arguments.csv, "Write the medians as CSV.");
+  add("--html", "FILE", arguments.html,
+      "Write tables and plots as one page that needs nothing else. Put NAME.json, the\n"
+      "report of the bake, beside NAME.mdk for what baking cost.");
+  add("--markdown", "FILE.md", arguments.markdown,
+      "Write the same as a document, and its pictures into a folder beside it.");
+  add("--quote", "FILE...", arguments.quoting,
+      "Make the texts of documents anew that stand between the markers\n"
+      "<!-- bench: techniques MODEL... --> and <!-- end of bench -->.")
       ->expected(1, -1);
-  command.add_option("--commit", arguments.commit, "What results give as the version measured.")
-      ->type_name("TEXT");
-  command
-      .add_option("--command", arguments.command,
-                  "What results give as the command that made them (default: this one).")
-      ->type_name("TEXT");
+  add("--commit", "TEXT", arguments.commit, "What results give as the version measured.");
+  add("--command", "TEXT", arguments.command,
+      "What results give as the command that made them (default: this one).");
 }
 
 }  // namespace

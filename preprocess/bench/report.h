@@ -119,10 +119,10 @@ std::vector<TextFile> markdown_pages(const Report& report, const std::string& na
 ///     <!-- bench: TOPIC ... -->
 ///     <!-- end of bench -->
 ///
-/// made anew from `results`. Topics: "techniques MODEL...", a table of all techniques on models of
-/// the first run; "setting", a sentence on machine and program. Throws Error (kBadInput) naming
-/// `origin` for a marker without an end or a topic that is none, or about a model that is not
-/// there.
+/// replaced by what `results` say. Topics: "techniques MODEL...", a table of all techniques on
+/// models of the first run; "setting", a sentence on machine and program. Throws Error (kBadInput)
+/// naming `origin` for a marker without an end or a topic that is none, or about a model that is
+/// not there.
 std::string with_quotes(std::string_view text, const BenchResults& results,
                         const std::string& origin);
 

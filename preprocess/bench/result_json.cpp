@@ -1,5 +1,4 @@
-// Bench results as a file. What a file holds is said once, in describe(): a Writer and a Reader go
-// through the same fields of each struct.
+// Bench results as a file. What a file holds is said once, in describe(), for writing and reading.
 //
 //     field      is always there; a list has at least one item
 //     newer      is always written; files of older versions lack it
@@ -29,112 +28,98 @@ constexpr bool kIsList = false;
 template <class Item>
 constexpr bool kIsList<std::vector<Item>> = true;
 
-class Writer {
+/// Writes the fields of a struct into an object, or reads them from one at a known place, so that
+/// a message can say what is wrong there.
+class Fields {
  public:
-  template <class Value>
-  using Of = const Value;
-
-  void field(const char* name, const auto& value) { object_[name] = json_of(value); }
-  void newer(const char* name, const auto& value) { field(name, value); }
-  void derived(const char* name, const auto& value) { field(name, value); }
-  void optional(const char* name, const std::string& value) {
-    if (!value.empty()) field(name, value);
-  }
-  template <class Value>
-  void optional(const char* name, const std::optional<Value>& value) {
-    if (value) field(name, *value);
-  }
+  Fields() = default;
+  Fields(const Json& from, std::string place) : from_(&from), place_(std::move(place)) {}
 
   template <class Value>
-  static Json json_of(const Value& value) {
-    if constexpr (std::is_constructible_v<std::string, Value> || std::is_arithmetic_v<Value>) {
+  void field(const char* name, Value& value) {
+    newer(name, value);
+    if (!is_reading()) return;
+    bool is_there = has(name);
+    if constexpr (kIsList<Value>) is_there = !value.empty();
+    require(is_there, std::string("has no ") + name);
+  }
+  template <class Value>
+  void newer(const char* name, Value& value) {
+    if (!is_reading()) {
+      written_[name] = json_of(value);
+    } else if (has(name)) {
+      Fields((*from_)[name], place_ + ": " + name).read(value);
+    }
+  }
+  template <class Value>
+  void optional(const char* name, Value& value) {  // text or a list
+    if (is_reading() || !value.empty()) newer(name, value);
+  }
+  template <class Value>
+  void optional(const char* name, std::optional<Value>& value) {
+    if (is_reading() && has(name)) value.emplace();
+    if (value) newer(name, *value);
+  }
+  void derived(const char* name, const Json& value) {
+    if (!is_reading()) written_[name] = value;
+  }
+
+  template <class Value>
+  static Json json_of(Value& value) {
+    if constexpr (std::is_arithmetic_v<Value> || std::is_same_v<Value, std::string>) {
       return value;
     } else if constexpr (kIsList<Value>) {
       Json list = Json::array();
-      for (const auto& item : value) list.push_back(json_of(item));
+      for (auto& item : value) list.push_back(json_of(item));
       return list;
     } else {
-      Writer part;
+      Fields part;
       describe(part, value);
-      return std::move(part.object_);
+      return std::move(part.written_);
     }
   }
 
- private:
-  Json object_ = Json::object();
-};
-
-/// A value at a known place, so that what is wrong with it can be told.
-class Reader {
- public:
   template <class Value>
-  using Of = Value;
-
-  Reader(const Json& value, std::string place) : value_(&value), place_(std::move(place)) {}
-
-  template <class Value>
-  void field(const char* name, Value& value) const {
-    newer(name, value);
-    bool is_there = has(name);
-    if constexpr (kIsList<Value>) is_there = !value.empty();
-    if (!is_there) refuse(std::string("has no ") + name);
-  }
-  void newer(const char* name, auto& value) const {
-    if (has(name)) Reader((*value_)[name], place_ + ": " + name).read(value);
-  }
-  void derived(const char*, const auto&) const {}
-  void optional(const char* name, std::string& value) const { newer(name, value); }
-  template <class Value>
-  void optional(const char* name, std::optional<Value>& value) const {
-    if (has(name)) newer(name, value.emplace());
-  }
-
-  template <class Value>
-  void read(Value& value) const {
+  void read(Value& value) {
     if constexpr (std::is_same_v<Value, double>) {
-      require(value_->is_number(), "is not a number");
-      value = value_->get<double>();
+      require(from_->is_number(), "is not a number");
+      value = from_->get<double>();
       require(std::isfinite(value) && value >= 0, "is not a number that can be measured");
     } else if constexpr (std::is_integral_v<Value>) {
-      require(value_->is_number_unsigned(), "is not a whole number");
-      const auto count = value_->get<std::uint64_t>();
+      require(from_->is_number_unsigned(), "is not a whole number");
+      const auto count = from_->get<std::uint64_t>();
       require(sizeof(Value) == 8 || count <= 0xffffffffu, "is too large");
       value = static_cast<Value>(count);
     } else if constexpr (std::is_same_v<Value, std::string>) {
-      require(value_->is_string(), "is not text");
-      value = value_->get<std::string>();
+      require(from_->is_string(), "is not text");
+      value = from_->get<std::string>();
     } else if constexpr (kIsList<Value>) {
-      require(value_->is_array(), "is not a list");
-      for (std::size_t i = 0; i < value_->size(); ++i)
-        Reader((*value_)[i], place_ + " " + std::to_string(i)).read(value.emplace_back());
+      require(from_->is_array(), "is not a list");
+      for (std::size_t i = 0; i < from_->size(); ++i)
+        Fields((*from_)[i], place_ + " " + std::to_string(i)).read(value.emplace_back());
     } else {
       describe(*this, value);
     }
   }
   void require(bool is_right, const std::string& otherwise) const {
-    if (!is_right) refuse(otherwise);
-  }
-  [[noreturn]] void refuse(const std::string& what) const {
-    throw Error(ErrorCode::kBadInput,
-                place_ + " " + what + "; the file is damaged or of another version");
+    if (!is_right)
+      throw Error(ErrorCode::kBadInput,
+                  place_ + " " + otherwise + "; the file is damaged or of another version");
   }
 
  private:
-  bool has(const char* name) const { return value_->is_object() && value_->contains(name); }
+  bool is_reading() const { return from_ != nullptr; }
+  bool has(const char* name) const { return from_->is_object() && from_->contains(name); }
 
-  const Json* value_;
+  const Json* from_ = nullptr;
   std::string place_;
+  Json written_ = Json::object();
 };
-
-/// T as `Io` has it: const for a Writer.
-template <class Io, class T>
-using Of = typename std::remove_const_t<Io>::template Of<T>;
 
 /// To 10 ns, as frames are measured.
 double rounded(double milliseconds) { return std::round(milliseconds * 1e5) / 1e5; }
 
-template <class Io>
-void describe(Io& io, Of<Io, BenchFrame>& frame) {
+void describe(Fields& io, BenchFrame& frame) {
   io.field("key", frame.key);
   io.derived("time_to_image_ms", rounded(frame.time_to_image_ms()));
   io.field("pose_ms", frame.pose_ms);
@@ -148,8 +133,7 @@ void describe(Io& io, Of<Io, BenchFrame>& frame) {
   io.field("structure_bytes", frame.structure_bytes);
 }
 
-template <class Io>
-void describe(Io& io, Of<Io, TechniqueBench>& technique) {
+void describe(Fields& io, TechniqueBench& technique) {
   const Quartiles image = technique.time_to_image_ms();
   const WorkPerRay work = technique.work();
   io.field("id", technique.id);
@@ -158,7 +142,7 @@ void describe(Io& io, Of<Io, TechniqueBench>& technique) {
   io.derived("trace_ms", technique.median_ms(&BenchFrame::trace_ms));
   io.derived("shade_ms", technique.median_ms(&BenchFrame::shade_ms));
   io.derived("time_to_image_ms", image.median);
-  io.derived("time_to_image_quartiles_ms", std::vector<double>{image.low, image.high});
+  io.derived("time_to_image_quartiles_ms", {image.low, image.high});
   io.newer("round_medians_ms", technique.round_medians_ms);
   io.derived("fps", technique.fps());
   io.derived("node_visits_per_ray", work.node_visits);
@@ -173,16 +157,14 @@ void describe(Io& io, Of<Io, TechniqueBench>& technique) {
   io.field("frames", technique.frames);
 }
 
-template <class Io>
-void describe(Io& io, Of<Io, ClusteringStep>& step) {
+void describe(Fields& io, ClusteringStep& step) {
   io.field("clusters", step.clusters);
   io.field("residual_rms", step.residual_rms);
   io.newer("fuzzy_area", step.fuzzy_area);
   io.field("sah_cost", step.sah_cost);
 }
 
-template <class Io>
-void describe(Io& io, Of<Io, BakeFacts::Seconds>& seconds) {
+void describe(Fields& io, BakeFacts::Seconds& seconds) {
   io.field("read", seconds.read);
   io.field("decompose", seconds.decompose);
   io.field("build", seconds.build);
@@ -191,8 +173,7 @@ void describe(Io& io, Of<Io, BakeFacts::Seconds>& seconds) {
 }
 
 /// With the names of the bake's own report.
-template <class Io>
-void describe(Io& io, Of<Io, BakeFacts>& bake) {
+void describe(Fields& io, BakeFacts& bake) {
   io.field("segments", bake.segments);
   io.field("stop_reason", bake.stop_reason);
   io.field("residual_rms", bake.residual_rms);
@@ -204,8 +185,7 @@ void describe(Io& io, Of<Io, BakeFacts>& bake) {
   io.newer("growth", bake.growth);
 }
 
-template <class Io>
-void describe(Io& io, Of<Io, ModelBench>& model) {
+void describe(Fields& io, ModelBench& model) {
   io.field("file", model.file);
   io.field("triangles", model.triangles);
   io.field("keys", model.keys);
@@ -214,8 +194,7 @@ void describe(Io& io, Of<Io, ModelBench>& model) {
   io.field("techniques", model.techniques);
 }
 
-template <class Io>
-void describe(Io& io, Of<Io, BenchSetting>& setting) {
+void describe(Fields& io, BenchSetting& setting) {
   io.field("isa", setting.isa);
   io.field("threads", setting.threads);
   io.field("width", setting.width);
@@ -223,22 +202,19 @@ void describe(Io& io, Of<Io, BenchSetting>& setting) {
   io.newer("shading", setting.shading);
 }
 
-template <class Io>
-void describe(Io& io, Of<Io, BenchRun>& run) {
+void describe(Fields& io, BenchRun& run) {
   describe(io, run.setting);
   io.field("models", run.models);
 }
 
-template <class Io>
-void describe(Io& io, Of<Io, BenchProgram>& program) {
+void describe(Fields& io, BenchProgram& program) {
   io.newer("version", program.version);
   io.newer("commit", program.commit);
   io.newer("compiler", program.compiler);
 }
 
-/// All but the further runs; there is a first one, be it empty.
-template <class Io>
-void describe(Io& io, Of<Io, BenchResults>& results) {
+/// There is a first run, be it empty.
+void describe(Fields& io, BenchResults& results) {
   io.derived("schema", kBenchSchema);
   describe(io, results.runs.front().setting);
   io.newer("cpu", results.machine.cpu);
@@ -246,6 +222,10 @@ void describe(Io& io, Of<Io, BenchResults>& results) {
   io.newer("program", results.program);
   io.newer("command", results.command);
   io.field("models", results.runs.front().models);
+  std::vector<BenchRun> further(results.runs.begin() + 1, results.runs.end());
+  io.optional("further_runs", further);
+  results.runs.resize(1);
+  std::move(further.begin(), further.end(), std::back_inserter(results.runs));
 }
 
 /// Values that hold no others' lists stay on one line: a frame is a line, as in a table.
@@ -271,27 +251,22 @@ void append_json(const Json& value, std::size_t depth, std::string& text) {
 }  // namespace
 
 std::string results_json(const BenchResults& results) {
-  Json report = Writer::json_of(results);
-  for (std::size_t i = 1; i < results.runs.size(); ++i)
-    report["further_runs"].push_back(Writer::json_of(results.runs[i]));
+  BenchResults written = results;  // describe() takes what it could read into
   std::string text;
-  append_json(report, 0, text);
+  append_json(Fields::json_of(written), 0, text);
   return text + "\n";
 }
 
 BenchResults parse_results(std::string_view text, const std::string& origin) {
   const Json json = Json::parse(text, nullptr, false);
   if (json.is_discarded()) throw bad_input(origin, "is not JSON");
-  const Reader report(json, origin);
+  Fields report(json, origin);
   std::string schema;
   report.field("schema", schema);
   report.require(schema == kBenchSchema, "is not of the schema " + std::string(kBenchSchema));
   BenchResults results;
   results.runs.resize(1);
   report.read(results);
-  std::vector<BenchRun> further;
-  report.newer("further_runs", further);
-  std::move(further.begin(), further.end(), std::back_inserter(results.runs));
   return results;
 }
 
@@ -308,7 +283,7 @@ std::optional<BakeFacts> read_bake_facts(const std::string& mdk_path, std::uint3
     const Json json = Json::parse(read_text_file(path, kMaxFileBytes), nullptr, false);
     if (json.is_discarded() || !json.is_object() || json.value("schema", Json()) != kBakeSchema)
       continue;
-    const Reader report(json, path);
+    Fields report(json, path);
     std::uint64_t counts[3] = {};
     report.field("triangles", counts[0]);
     report.field("keys", counts[1]);

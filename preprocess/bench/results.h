@@ -62,7 +62,7 @@ struct TechniqueBench {
   WorkPerRay work() const;
 };
 
-/// What `mdprep bake --report` told of a file.
+/// What `mdprep bake --report` says of a file.
 struct BakeFacts {
   struct Seconds {
     double read = 0, decompose = 0, build = 0, write = 0, total = 0;

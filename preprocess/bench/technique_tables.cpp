@@ -19,7 +19,7 @@ struct TechniqueRow {
   WorkPerRay work = technique.work();
 };
 
-/// What is told of every technique: its head in each place, or null where it is not told there.
+/// A figure of every technique: its head in each place, or null where it is not shown there.
 struct Listed {
   const char *csv, *terminal, *page;
   std::function<std::string(const TechniqueRow&, Place)> text;
@@ -46,7 +46,7 @@ auto phase(double BenchFrame::*ms, int decimals) {
   return figure([=](auto& r) { return r.technique.median_ms(ms); }, decimals);
 }
 
-/// Peers count nothing, which pages tell from no work.
+/// Peers count nothing: a dash on pages.
 auto work(double WorkPerRay::*count) {
   return [=](const TechniqueRow& r, Place place) {
     const bool counts = r.work.node_visits > 0 || r.work.triangle_tests > 0;

@@ -4,8 +4,8 @@
 
 #include <sstream>
 
-#include "tests/preprocess/bench/made_up_results.h"
 #include "tests/formats/expect_error.h"
+#include "tests/preprocess/bench/made_up_results.h"
 
 namespace mdk::test {
 namespace {

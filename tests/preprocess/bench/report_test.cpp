@@ -4,11 +4,10 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <sstream>
 
-#include "preprocess/bench/report.h"
-#include "preprocess/bench/report.h"
-#include "tests/preprocess/bench/made_up_results.h"
 #include "tests/formats/expect_error.h"
+#include "tests/preprocess/bench/made_up_results.h"
 
 namespace mdk::test {
 namespace {
@@ -127,6 +126,28 @@ TEST(MarkdownPages, AreOneDocumentAndThePicturesItShows) {
     EXPECT_EQ(files[i].text.rfind("<svg class=\"chart\" xmlns=", 0), 0u);
     EXPECT_THAT(files[i].text, HasSubstr("prefers-color-scheme:dark"));
   }
+}
+
+TEST(TechniqueTables, CsvHasALinePerRunModelAndTechniqueAndQuotesWhatItMust) {
+  BenchResults results = made_up_results();
+  results.runs[0].models[0].file = "a,\"b\".mdk";
+  std::istringstream csv(csv_text(csv_table(results)));
+  std::string header, row;
+  std::getline(csv, header);
+  std::getline(csv, row);
+  EXPECT_EQ(header.rfind("file,isa,threads,width,height,triangles,keys,clusters,id,", 0), 0u);
+  EXPECT_EQ(row.rfind("\"a,\"\"b\"\".mdk\",avx2,1,10,10,16000,11,4,fuzzy-bvh,0.5,2,20,4,", 0), 0u);
+  int more = 0;
+  while (std::getline(csv, row)) ++more;
+  EXPECT_EQ(more, 6 + 3 + 2);
+}
+
+TEST(TechniqueTables, TheTableHasARowPerTechnique) {
+  std::ostringstream out;
+  print_table(out, printed_table(made_up_results().runs[0]));
+  const std::string text = out.str();
+  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 1 + 7 + 3);
+  EXPECT_NE(text.find("26.50"), std::string::npos);
 }
 
 TEST(Quotes, AreMadeAnewBetweenTheirMarkersAlone) {

@@ -1,14 +1,11 @@
-#include "preprocess/bench/results.h"
-
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
-#include <sstream>
 
-#include "preprocess/bench/report.h"
-#include "tests/preprocess/bench/made_up_results.h"
+#include "preprocess/bench/results.h"
 #include "tests/formats/expect_error.h"
 #include "tests/formats/temp_folder.h"
+#include "tests/preprocess/bench/made_up_results.h"
 
 namespace mdk::test {
 namespace {
@@ -87,28 +84,6 @@ TEST(BakeFacts, AreReadFromTheReportBesideTheFileIfItIsAboutTheModel) {
   EXPECT_FALSE(read_bake_facts(mdk, 13, 3, 2)) << "another model";
   write_text(folder.file("hand.json"), "{}");
   EXPECT_FALSE(read_bake_facts(mdk, 12, 3, 2)) << "not a report";
-}
-
-TEST(ResultTables, CsvHasALinePerRunModelAndTechniqueAndQuotesWhatItMust) {
-  BenchResults results = made_up_results();
-  results.runs[0].models[0].file = "a,\"b\".mdk";
-  std::istringstream csv(csv_text(csv_table(results)));
-  std::string header, row;
-  std::getline(csv, header);
-  std::getline(csv, row);
-  EXPECT_EQ(header.rfind("file,isa,threads,width,height,triangles,keys,clusters,id,", 0), 0u);
-  EXPECT_EQ(row.rfind("\"a,\"\"b\"\".mdk\",avx2,1,10,10,16000,11,4,fuzzy-bvh,0.5,2,20,4,", 0), 0u);
-  int more = 0;
-  while (std::getline(csv, row)) ++more;
-  EXPECT_EQ(more, 6 + 3 + 2);
-}
-
-TEST(ResultTables, TheTableHasARowPerTechnique) {
-  std::ostringstream out;
-  print_table(out, printed_table(made_up_results().runs[0]));
-  const std::string text = out.str();
-  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 1 + 7 + 3);
-  EXPECT_NE(text.find("26.50"), std::string::npos);
 }
 
 }  // namespace

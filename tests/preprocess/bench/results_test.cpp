@@ -4,8 +4,8 @@
 
 #include "common/base/error.h"
 #include "preprocess/cli/median.h"
-#include "tests/preprocess/bench/made_up_results.h"
 #include "tests/formats/expect_error.h"
+#include "tests/preprocess/bench/made_up_results.h"
 
 namespace mdk::test {
 namespace {
@@ -38,7 +38,7 @@ TEST(TechniqueBench, MediansAreOverFramesAndWorkIsPerRay) {
   EXPECT_EQ(technique.work().clusters, 0.5);
 }
 
-TEST(TechniqueBench, UnrestIsHowFarTheSecondFastestRoundLiesBehindTheFastest) {
+TEST(TechniqueBench, RoundSpreadIsHowFarTheSecondFastestRoundLiesBehindTheFastest) {
   TechniqueBench technique;
   EXPECT_EQ(technique.round_spread(), 0);
   technique.round_medians_ms = {20};
