@@ -245,7 +245,7 @@ void add_result_options(CLI::App& command, BenchArguments& arguments) {
   add("--markdown", "FILE.md", arguments.markdown,
       "Write the same as a document, and its pictures into a folder beside it.");
   add("--quote", "FILE...", arguments.quoting,
-      "Make the texts of documents anew that stand between the markers\n"
+      "Replace the texts in documents that stand between the markers\n"
       "<!-- bench: techniques MODEL... --> and <!-- end of bench -->.")
       ->expected(1, -1);
   add("--commit", "TEXT", arguments.commit, "What results give as the version measured.");

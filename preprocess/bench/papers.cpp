@@ -104,7 +104,8 @@ Section gfw06_figure7(const BenchRun& run) {
   return figure_section(
       {.id = "gfw06-figure-7",
        .caption = "Residual motion, summed area of the fuzzy boxes, and the expected work of a ray "
-                  "(area, and a price for every cluster met), as the bake saw them at each stage; "
+                  "(area, and a fixed cost for every cluster entered), as the bake saw them at "
+                  "each stage; "
                   "each relative to one cluster, and drawn at 0.001 where it is less.",
        .charts = charts_of_models(run, chart_of)},
       "While clusters are added (GFW06 Figure 7)",

@@ -319,7 +319,7 @@ Section bakes(const BenchRun& run) {
   };
   Table table = table_of<const ModelBench*>(
       "From the bake's own reports: seconds of one run, residuals relative to the diagonal of the "
-      "rest pose, cost as the expected work of a ray that meets the model.",
+      "rest pose, cost as the expected work of a ray that hits the model's box.",
       rows,
       {{"model", [](auto* m) { return m->name(); }},
        {"stopped by", [](auto* m) { return stop_text(m->bake->stop_reason); }},

@@ -80,7 +80,7 @@ const Listed kListed[] = {
        return fixed_text(r.image.low, 2) + (place == Place::kPage ? "–" : "-") +
               fixed_text(r.image.high, 2);
      }},
-    {nullptr, nullptr, "unrest",
+    {nullptr, nullptr, "round spread",
      [](auto& r, Place) { return fixed_text(100 * r.technique.round_spread(), 1) + " %"; }},
     {"fps", "fps", "fps", figure([](auto& r) { return r.technique.fps(); }, 1)},
     {"node_visits_per_ray", "visits/ray", "visits/ray", work(&WorkPerRay::node_visits)},
@@ -126,7 +126,8 @@ Section detail_section(const BenchRun& run) {
       "Every technique on every model",
       {Paragraph{
           "Medians over the frames in milliseconds; the middle half of the time to image over the "
-          "animation; unrest: how far the second fastest round lay behind the fastest; work per "
+          "animation; round spread: how far the second fastest round lay behind the fastest; work "
+          "per "
           "ray; memory of the structures; all work done ahead for these keys; pixels that differ "
           "from brute force."}}};
   for (const ModelBench& model : run.models) {
