@@ -1,0 +1,265 @@
+// Tables and figures of GFW06 and Lo09, with our figures in place of theirs.
+#include <algorithm>
+#include <array>
+
+#include "common/base/figure_text.h"
+#include "preprocess/bench/report.h"
+
+namespace mdk {
+namespace {
+
+// --- GFW06 ---
+
+/// GFW06 Table 1.
+struct PaperRow {
+  const char *scene, *triangles, *steps_ratio, *tests_ratio, *fps_ratio, *fuzzy_fps;
+};
+constexpr PaperRow kPaper[] = {{"ben", "78,029", "1.54", "1.9", "1.94", "10.77"},
+                               {"chicken", "5,664", "1.80", "6.2", "2.61", "15.03"},
+                               {"cow", "5,804", "1.49", "4.0", "1.53", "12.49"},
+                               {"dolphin", "12,377", "1.91", "1.59", "1.16", "19.31"},
+                               {"hand", "15,855", "1.76", "1.15", "1.64", "10.94"}};
+
+struct KdTrees {
+  const ModelBench& model;
+  const TechniqueBench &fixed, &fuzzy;
+  WorkPerRay fixed_work = fixed.work(), fuzzy_work = fuzzy.work();
+
+  std::string paper(const char* PaperRow::*ratio) const {
+    for (const PaperRow& row : kPaper)
+      if (model.name() == row.scene) return row.*ratio;
+    return "–";
+  }
+};
+
+std::string strong_ratio(double a, double b) { return "**" + ratio_text(a, b) + "**"; }
+
+Section gfw06_table1(const BenchRun& run) {
+  std::vector<KdTrees> rows;
+  for (const ModelBench& model : run.models) {
+    const TechniqueBench* fixed = model.find("static-kdtree");
+    const TechniqueBench* fuzzy = model.find("fuzzy-kdtree");
+    if (fixed != nullptr && fuzzy != nullptr) rows.push_back({model, *fixed, *fuzzy});
+  }
+  Table table = table_of<KdTrees>(
+      "One kd-tree over fuzzy boxes that hold at all times (`fuzzy-kdtree`) beside a kd-tree built "
+      "ahead for every single key (`static-kdtree`): traversal steps and triangle tests per ray, "
+      "amortised over the rays of a tile, and frames per second. Ratios are what the one tree "
+      "costs: fuzzy / static for work, static / fuzzy for frames per second. GFW06's ratios stand "
+      "beside those of samples of the same kind.",
+      rows,
+      {{"model", [](auto& r) { return r.model.name(); }},
+       {"triangles", [](auto& r) { return grouped_text(r.model.triangles); }},
+       {"keys", [](auto& r) { return std::to_string(r.model.keys); }},
+       {"clusters", [](auto& r) { return std::to_string(r.model.clusters); }},
+       {"steps static", [](auto& r) { return fixed_text(r.fixed_work.node_visits, 3); }},
+       {"steps fuzzy", [](auto& r) { return fixed_text(r.fuzzy_work.node_visits, 3); }},
+       {"ratio",
+        [](auto& r) { return strong_ratio(r.fuzzy_work.node_visits, r.fixed_work.node_visits); }},
+       {"GFW06", [](auto& r) { return r.paper(&PaperRow::steps_ratio); }},
+       {"tests static", [](auto& r) { return fixed_text(r.fixed_work.triangle_tests, 2); }},
+       {"tests fuzzy", [](auto& r) { return fixed_text(r.fuzzy_work.triangle_tests, 2); }},
+       {"ratio",
+        [](auto& r) {
+          return strong_ratio(r.fuzzy_work.triangle_tests, r.fixed_work.triangle_tests);
+        }},
+       {"GFW06", [](auto& r) { return r.paper(&PaperRow::tests_ratio); }},
+       {"fps static", [](auto& r) { return fixed_text(r.fixed.fps(), 1); }},
+       {"fps fuzzy", [](auto& r) { return fixed_text(r.fuzzy.fps(), 1); }},
+       {"ratio", [](auto& r) { return strong_ratio(r.fixed.fps(), r.fuzzy.fps()); }},
+       {"GFW06", [](auto& r) { return r.paper(&PaperRow::fps_ratio); }}});
+  return {"gfw06-table-1",
+          "Fuzzy kd-tree against static kd-trees (GFW06 Table 1)",
+          {or_needs(std::move(table),
+                    "Needs `static-kdtree` and `fuzzy-kdtree` measured on one model.")}};
+}
+
+/// A figure of the decomposition as a share of what it is with one cluster.
+ChartSeries growth_series(const std::vector<ClusteringStep>& steps, const char* label,
+                          std::size_t style, double ClusteringStep::*figure) {
+  constexpr double kMinShare = 1e-3;
+  ChartSeries series{label, numbered_style(style), {}};
+  const double unit = steps.front().*figure;
+  for (const ClusteringStep& step : steps)
+    if (unit > 0)
+      series.points.push_back(
+          {static_cast<double>(step.clusters), std::max(step.*figure / unit, kMinShare)});
+  return series;
+}
+
+Section gfw06_figure7(const BenchRun& run) {
+  const auto chart_of = [](const ModelBench& model) {
+    Chart chart{.title = model.name(),
+                .x_label = "clusters",
+                .y_label = "share of one cluster's",
+                .y_scale = Scale::kLog,
+                .marks = Marks::kDots};
+    if (!model.bake || model.bake->growth.size() < 2) return chart;
+    const std::vector<ClusteringStep>& steps = model.bake->growth;
+    chart.series = {growth_series(steps, "residual motion (RMS)", 1, &ClusteringStep::residual_rms),
+                    growth_series(steps, "area of the fuzzy boxes", 0, &ClusteringStep::fuzzy_area),
+                    growth_series(steps, "expected work of a ray", 2, &ClusteringStep::sah_cost)};
+    return chart;
+  };
+  return figure_section(
+      {.id = "gfw06-figure-7",
+       .caption = "Residual motion, summed area of the fuzzy boxes, and the expected work of a ray "
+                  "(area, and a fixed cost for every cluster entered), as the bake saw them at "
+                  "each stage; "
+                  "each relative to one cluster, and drawn at 0.001 where it is less.",
+       .charts = charts_of_models(run, chart_of)},
+      "While clusters are added (GFW06 Figure 7)",
+      "No bake report with more than one stage stood beside the files: bake with `--report "
+      "NAME.json` beside `NAME.mdk`.");
+}
+
+Chart frame_rate_chart(const BenchRun& run, const char* id) {
+  Chart chart{.title = id,
+              .x_label = "course of the animation, %",
+              .y_label = "frames per second",
+              .labels = Labels::kAtEnd};
+  const std::vector<const ModelBench*> models = whole_models(run);
+  for (std::size_t m = 0; m < models.size(); ++m) {
+    const TechniqueBench* technique = models[m]->find(id);
+    const std::uint32_t keys = models[m]->keys;
+    if (technique == nullptr || technique->frames.size() < 2 || keys < 2) continue;
+    ChartSeries series{models[m]->name(), numbered_style(m), {}};
+    for (const BenchFrame& frame : technique->frames)
+      series.points.push_back(
+          {100.0 * frame.key / (keys - 1), per_second(frame.time_to_image_ms())});
+    chart.series.push_back(std::move(series));
+  }
+  return chart;
+}
+
+Section gfw06_figure8(const BenchRun& run) {
+  Figure figure{
+      .id = "gfw06-figure-8",
+      .caption = "Frames per second over the course of each animation, one line per model.",
+      .has_legend = false};
+  for (const char* id : {"fuzzy-kdtree", "fuzzy-bvh"}) {
+    Chart chart = frame_rate_chart(run, id);
+    if (!chart.series.empty()) figure.charts.push_back(std::move(chart));
+  }
+  return figure_section(std::move(figure), "Frame rate over the animation (GFW06 Figure 8)",
+                        "Needs `fuzzy-kdtree` or `fuzzy-bvh` measured at two keys or more.");
+}
+
+// --- Lo09 ---
+
+/// A row of Lo09 Table I: frames per second in the order of kFour.
+struct FourRates {
+  std::string animation;
+  std::array<double, 4> fps{};
+};
+constexpr const char* kFour[] = {"rebuild-bvh", "refit-bvh", "fuzzy-bvh", "decomp-refit"};
+const std::vector<FourRates>& thesis_rows() {
+  static const std::vector<FourRates> rows = {{"Cally walking", {11.55, 12.44, 8.76, 9.50}},
+                                              {"Cally freestyle", {11.21, 11.37, 8.78, 9.22}},
+                                              {"Skeleton freestyle", {13.07, 14.36, 13.81, 13.50}},
+                                              {"Paladin jogging", {9.86, 10.35, 6.97, 7.72}}};
+  return rows;
+}
+
+Table four_table(std::string text, const std::vector<FourRates>& rows) {
+  std::vector<Column<FourRates>> columns = {{"animation", [](auto& r) { return r.animation; }}};
+  std::size_t t = 0;
+  for (const char* head : {"fast rebuilds", "refitting", "clusters, fuzzy", "clusters, refitted"})
+    columns.push_back({head, [i = t++](auto& r) { return fixed_text(r.fps[i], 2); }});
+  t = 1;
+  for (const char* head : {"refit / rebuild", "fuzzy / rebuild", "clusters, refitted / rebuild"})
+    columns.push_back({head, [i = t++](auto& r) {
+                         return r.fps[0] > 0 ? strong_ratio(r.fps[i], r.fps[0]) : "–";
+                       }});
+  return table_of(std::move(text), rows, columns);
+}
+
+Section lo09_table1(const BenchRun& run) {
+  std::vector<FourRates> ours;
+  for (const ModelBench& model : run.models) {
+    FourRates row{model.name()};
+    std::size_t found = 0;
+    for (const char* id : kFour)
+      if (const TechniqueBench* technique = model.find(id)) row.fps[found++] = technique->fps();
+    if (found == row.fps.size()) ours.push_back(row);
+  }
+  return {"lo09-table-1",
+          "Four techniques for moving meshes (Lo09 Table I)",
+          {Paragraph{"Frames per second (1000 / median time to image) of `rebuild-bvh`, "
+                     "`refit-bvh`, `fuzzy-bvh` and `decomp-refit`, and how many times as fast as "
+                     "rebuilding each is."},
+           or_needs(four_table("", ours), "Needs all four measured on one model."),
+           four_table("The thesis's own figures (512 x 512, one core at 2.4 GHz, 2009; first 50 "
+                      "frames):",
+                      thesis_rows())}};
+}
+
+/// Figures 5.1 to 5.20 of Lo09: a chart for each model, a line for each technique over the keys.
+struct FrameFigure {
+  const char* id;
+  const char* numbers;
+  const char* title;
+  const char* y_label;
+  const char* caption;
+  Scale scale;
+  double (*value)(const BenchFrame&);
+  bool is_per_ray = false;
+};
+const FrameFigure kFrameFigures[] = {
+    {"lo09-time-to-image", "5.1–5.4", "Time to image", "ms", "Pose, update, trace and shade.",
+     Scale::kLinear, [](const BenchFrame& f) { return f.time_to_image_ms(); }},
+    {"lo09-trace", "5.5–5.8", "Trace time", "ms", "Finding the closest hits of all rays.",
+     Scale::kLinear, [](const BenchFrame& f) { return f.trace_ms; }},
+    {"lo09-triangle-tests", "5.9–5.12", "Triangle tests", "tests per ray",
+     "Ray-triangle pairs evaluated, over all rays of the picture. Peers do not count.",
+     Scale::kLinear,
+     [](const BenchFrame& f) { return static_cast<double>(f.counters.triangle_tests); }, true},
+    {"lo09-node-tests", "5.13–5.16", "Node tests", "visits per ray",
+     "Boxes tested or kd-tree nodes visited, once for a tile of rays that shares a frustum. Peers "
+     "do not count.",
+     Scale::kLinear,
+     [](const BenchFrame& f) { return static_cast<double>(f.counters.node_visits); }, true},
+    {"lo09-update", "5.17–5.20", "Update time", "ms",
+     "Making the structure valid for the frame, on a logarithmic scale; the pose is computed "
+     "before, alike for all. `static-kdtree` only swaps trees that were built ahead.",
+     Scale::kLog, [](const BenchFrame& f) { return f.update_ms; }},
+};
+
+std::vector<ChartPoint> frame_points(const TechniqueBench& technique, const FrameFigure& kind) {
+  std::vector<ChartPoint> points;
+  const double unit = kind.is_per_ray ? static_cast<double>(technique.rays_per_frame) : 1;
+  double largest = 0;
+  for (const BenchFrame& frame : technique.frames) {
+    const double value = unit > 0 ? kind.value(frame) / unit : 0;
+    largest = std::max(largest, value);
+    points.push_back({static_cast<double>(frame.key), value});
+  }
+  return technique.frames.size() > 1 && largest > 0 ? points : std::vector<ChartPoint>();
+}
+
+Section lo09_figure(const BenchRun& run, const FrameFigure& kind) {
+  const auto chart_of = [&](const ModelBench& model) {
+    return Chart{.title = model.name(),
+                 .x_label = "key",
+                 .y_label = kind.y_label,
+                 .y_scale = kind.scale,
+                 .series = technique_series(model, [&](const TechniqueBench& technique) {
+                   return frame_points(technique, kind);
+                 })};
+  };
+  return figure_section(
+      {.id = kind.id, .caption = kind.caption, .charts = charts_of_models(run, chart_of)},
+      std::string(kind.title) + " over the animation (Lo09 Figures " + kind.numbers + ")",
+      "Needs a model measured at two keys or more.");
+}
+
+}  // namespace
+
+std::vector<Section> paper_sections(const BenchRun& run) {
+  std::vector<Section> sections = {gfw06_table1(run), gfw06_figure7(run), gfw06_figure8(run),
+                                   lo09_table1(run)};
+  for (const FrameFigure& kind : kFrameFigures) sections.push_back(lo09_figure(run, kind));
+  return sections;
+}
+
+}  // namespace mdk

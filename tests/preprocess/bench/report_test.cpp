@@ -1,0 +1,175 @@
+// The report as data, as a page and as documents, from results that were made up.
+#include "preprocess/bench/report.h"
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <sstream>
+
+#include "tests/formats/expect_error.h"
+#include "tests/preprocess/bench/made_up_results.h"
+
+namespace mdk::test {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::Not;
+
+Section section(const Report& report, const std::string& id) {
+  const auto found = std::find_if(report.sections.begin(), report.sections.end(),
+                                  [&](const Section& s) { return s.id == id; });
+  if (found == report.sections.end()) throw std::runtime_error("there is no section " + id);
+  return *found;
+}
+
+template <class Kind>
+Kind block(const Section& section) {
+  for (const Block& block : section.blocks)
+    if (std::holds_alternative<Kind>(block)) return std::get<Kind>(block);
+  throw std::runtime_error("no such block in " + section.id);
+}
+
+TEST(Report, HasEveryTableAndFigureOfBothPapersAndOurOwn) {
+  const Report report = make_report(made_up_results());
+  std::vector<std::string> ids;
+  for (const Section& s : report.sections) ids.push_back(s.id);
+  EXPECT_THAT(ids, ElementsAre("summary", "gfw06-table-1", "gfw06-figure-7", "gfw06-figure-8",
+                               "lo09-table-1", "lo09-time-to-image", "lo09-trace",
+                               "lo09-triangle-tests", "lo09-node-tests", "lo09-update", "crossover",
+                               "memory", "bake", "machines", "details", "method"));
+  for (const char* id :
+       {"gfw06-figure-7", "gfw06-figure-8", "lo09-time-to-image", "lo09-trace",
+        "lo09-triangle-tests", "lo09-node-tests", "lo09-update", "crossover", "memory"}) {
+    const Figure figure = block<Figure>(section(report, id));
+    ASSERT_FALSE(figure.charts.empty()) << id;
+    for (const Chart& chart : figure.charts) {
+      EXPECT_FALSE(chart.x_label.empty()) << id;
+      EXPECT_FALSE(chart.y_label.empty()) << id;
+      EXPECT_FALSE(chart.series.empty()) << id;
+    }
+  }
+}
+
+TEST(Report, PutsThePapersRatiosBesideOurs) {
+  const Table table = block<Table>(section(make_report(made_up_results()), "gfw06-table-1"));
+  ASSERT_EQ(table.rows.size(), 1u) << "only one model has both kd-trees";
+  EXPECT_THAT(table.rows[0],
+              ElementsAre("hand", "16,000", "11", "4", "3.000", "3.000", "**1.00**", "1.76", "2.00",
+                          "2.00", "**1.00**", "1.15", "31.4", "25.2", "**1.25**", "1.64"));
+}
+
+TEST(Report, SaysWhereFuzzyStructuresOvertake) {
+  const Paragraph text = block<Paragraph>(section(make_report(made_up_results()), "crossover"));
+  EXPECT_THAT(text.text, HasSubstr("hand: `fuzzy-bvh` overtakes `refit-bvh` at about 21,000"));
+  EXPECT_THAT(text.text, HasSubstr("is faster than `rebuild-bvh` at every size measured."));
+}
+
+TEST(Report, ComparesThreadsAndInstructionSets) {
+  const Section machines = section(make_report(made_up_results()), "machines");
+  const Table runs = block<Table>(machines);
+  ASSERT_EQ(runs.rows.size(), 3u);
+  EXPECT_EQ(runs.rows[0].back(), "**2.50**");
+  EXPECT_EQ(runs.rows[1].back(), "**3.00**");
+  const Table threads = std::get<Table>(machines.blocks.back());
+  EXPECT_THAT(threads.rows[0],
+              ElementsAre("hand", "`fuzzy-bvh`", "avx2", "2", "26.50", "13.25", "**2.00**"));
+}
+
+TEST(Report, AModelWithoutBakeReportOrManyKeysStillMakesAReport) {
+  BenchResults results = made_up_results();
+  results.runs.resize(1);
+  results.runs[0].models.resize(1);
+  ModelBench& model = results.runs[0].models[0];
+  model.bake.reset();
+  model.keys = 1;
+  model.techniques = {made_up_technique("brute-force")};
+  model.techniques[0].frames.resize(1);
+  const Report report = make_report(results);
+  for (const char* id :
+       {"gfw06-table-1", "gfw06-figure-7", "gfw06-figure-8", "lo09-trace", "crossover", "bake"})
+    EXPECT_FALSE(block<Paragraph>(section(report, id)).text.empty()) << "says what is missing";
+  EXPECT_THAT(html_page(report), HasSubstr("</html>"));
+}
+
+TEST(HtmlPage, NeedsNothingElse) {
+  std::string page = html_page(make_report(made_up_results()));
+  for (const char* word : {"<script", "<link", "src=", "url(", "@import", "<iframe", "<img"})
+    EXPECT_THAT(page, Not(HasSubstr(word)));
+  const std::string name_space = "http://www.w3.org/2000/svg";
+  for (std::size_t at; (at = page.find(name_space)) != std::string::npos;)
+    page.erase(at, name_space.size());
+  EXPECT_THAT(page, Not(HasSubstr("http")));
+  EXPECT_THAT(page, HasSubstr("prefers-color-scheme:dark"));
+}
+
+TEST(HtmlPage, ListsItsContentsAndNamesMachineProgramAndCommand) {
+  const Report report = make_report(made_up_results());
+  const std::string page = html_page(report);
+  for (const Section& s : report.sections) {
+    EXPECT_THAT(page, HasSubstr("<a href=\"#" + s.id + "\">"));
+    EXPECT_THAT(page, HasSubstr("<section id=\"" + s.id + "\">"));
+  }
+  EXPECT_THAT(page, HasSubstr("Processor &lt;1&gt; &amp; co, 2 cores"));
+  EXPECT_THAT(page, HasSubstr("commit abc1234"));
+  EXPECT_THAT(page, HasSubstr("<code>./run bench</code>"));
+  EXPECT_THAT(page, Not(HasSubstr("**")));
+  EXPECT_THAT(page, Not(HasSubstr("`")));
+}
+
+TEST(MarkdownPages, AreOneDocumentAndThePicturesItShows) {
+  const std::vector<TextFile> files = markdown_pages(make_report(made_up_results()), "bench");
+  ASSERT_EQ(files.size(), 10u);
+  EXPECT_EQ(files[0].name, "bench.md");
+  for (std::size_t i = 1; i < files.size(); ++i) {
+    EXPECT_THAT(files[0].text, HasSubstr("](" + files[i].name + ")"));
+    EXPECT_EQ(files[i].text.rfind("<svg class=\"chart\" xmlns=", 0), 0u);
+    EXPECT_THAT(files[i].text, HasSubstr("prefers-color-scheme:dark"));
+  }
+}
+
+TEST(TechniqueTables, CsvHasALinePerRunModelAndTechniqueAndQuotesWhatItMust) {
+  BenchResults results = made_up_results();
+  results.runs[0].models[0].file = "a,\"b\".mdk";
+  std::istringstream csv(csv_text(csv_table(results)));
+  std::string header, row;
+  std::getline(csv, header);
+  std::getline(csv, row);
+  EXPECT_EQ(header.rfind("file,isa,threads,width,height,triangles,keys,clusters,id,", 0), 0u);
+  EXPECT_EQ(row.rfind("\"a,\"\"b\"\".mdk\",avx2,1,10,10,16000,11,4,fuzzy-bvh,0.5,2,20,4,", 0), 0u);
+  int more = 0;
+  while (std::getline(csv, row)) ++more;
+  EXPECT_EQ(more, 6 + 3 + 2);
+}
+
+TEST(TechniqueTables, TheTableHasARowPerTechnique) {
+  std::ostringstream out;
+  print_table(out, printed_table(made_up_results().runs[0]));
+  const std::string text = out.str();
+  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 1 + 7 + 3);
+  EXPECT_NE(text.find("26.50"), std::string::npos);
+}
+
+TEST(Quotes, AreMadeAnewBetweenTheirMarkersAlone) {
+  const std::string document =
+      "before\n<!-- bench: techniques hand -->\nold\n<!-- end of bench -->\nbetween\n"
+      "<!-- bench: setting -->\n<!-- end of bench -->\nafter\n";
+  const std::string quoted = with_quotes(document, made_up_results(), "README.md");
+  EXPECT_EQ(quoted.rfind("before\n<!-- bench: techniques hand -->\n| technique |", 0), 0u);
+  EXPECT_THAT(quoted, HasSubstr("| `fuzzy-bvh` | 2.00 | 20.0 | 26.5 | 2.0 KiB |\n"));
+  EXPECT_THAT(quoted, HasSubstr("10×10, one thread, avx2, Processor <1> & co, commit abc1234\n"));
+  EXPECT_THAT(quoted, Not(HasSubstr("old")));
+  EXPECT_EQ(with_quotes(quoted, made_up_results(), "README.md"), quoted);
+  EXPECT_EQ(with_quotes("no markers", made_up_results(), "README.md"), "no markers");
+}
+
+TEST(Quotes, AMarkerThatCannotBeFilledIsRefused) {
+  for (const char* document :
+       {"<!-- bench: techniques hand -->\n", "<!-- bench: weather -->\n<!-- end of bench -->",
+        "<!-- bench: techniques foot -->\n<!-- end of bench -->", "<!-- bench: "})
+    expect_error(ErrorCode::kBadInput, "README.md",
+                 [&] { with_quotes(document, made_up_results(), "README.md"); });
+}
+
+}  // namespace
+}  // namespace mdk::test
