@@ -1,5 +1,6 @@
 // Bvh: a binary bounding volume hierarchy with 32-byte nodes, built top down by the surface area
-// heuristic, over boxes as they are or over boxes that move, and kept valid by refitting.
+// heuristic, over boxes as they are or over boxes that move. What is traced is a WideBvh made of
+// one.
 #pragma once
 
 #include <cstdint>
@@ -31,10 +32,6 @@ struct BvhNode {
 
   bool is_leaf() const { return count != 0; }
   Aabb box() const { return {lo, hi}; }
-  void set_box(const Aabb& b) {
-    lo = b.lo;
-    hi = b.hi;
-  }
 };
 static_assert(sizeof(BvhNode) == 32);
 
@@ -42,10 +39,6 @@ static_assert(sizeof(BvhNode) == 32);
 struct Bvh {
   std::vector<BvhNode> nodes;
   std::vector<std::uint32_t> refs;
-
-  std::size_t bytes() const {
-    return nodes.size() * sizeof(BvhNode) + refs.size() * sizeof(std::uint32_t);
-  }
 };
 
 struct BvhBuildConfig {
@@ -75,13 +68,6 @@ Bvh build_bvh(std::span<const Aabb> boxes, const BvhBuildConfig& config = {});
 /// log N). The result depends on the input alone.
 Bvh build_temporal_bvh(std::span<const Aabb> boxes, std::uint32_t poses,
                        const BvhBuildConfig& config);
-
-/// New boxes for the same items, bottom up (Lo09 §4.2). `boxes` has one per item, as in the build.
-/// Cost: O(N).
-void refit_bvh(Bvh& bvh, std::span<const Aabb> boxes);
-
-/// Expected cost of a ray that hits the root's box (SAH). A root without area counts as hit whole.
-double sah_cost(const Bvh& bvh, const BvhBuildConfig& config);
 
 /// The first fault found in a hierarchy over `boxes`, in words; empty where there is none. Sound:
 /// every node is reached once, from a node before it, none deeper than kMaxBvhDepth; every item is

@@ -5,10 +5,12 @@
 #include <algorithm>
 #include <cassert>
 #include <optional>
+#include <utility>
 
 #include "common/base/parallel.h"
 #include "common/structures/bvh.h"
 #include "common/structures/bvh_bins.h"
+#include "common/structures/link_check.h"
 #include "common/structures/top_down.h"
 
 namespace mdk {
@@ -273,6 +275,18 @@ void attach(std::vector<std::vector<BvhNode>> subtrees, std::vector<BvhNode>& no
   }
 }
 
+/// The union of what is under a node.
+Aabb box_under(const Bvh& bvh, const BvhNode& node, std::span<const Aabb> boxes) {
+  Aabb box;
+  if (node.is_leaf()) {
+    for (std::uint32_t r = 0; r < node.count; ++r) box.extend(boxes[bvh.refs[node.first + r]]);
+  } else {
+    box = bvh.nodes[node.first].box();
+    box.extend(bvh.nodes[node.first + 1].box());
+  }
+  return box;
+}
+
 }  // namespace
 
 Bvh build_bvh(std::span<const Aabb> boxes, const BvhBuildConfig& config) {
@@ -294,6 +308,29 @@ Bvh build_bvh(std::span<const Aabb> boxes, const BvhBuildConfig& config) {
   attach(std::move(subtrees), bvh.nodes);
   assert(validate(bvh, boxes, config.max_leaf).empty());
   return bvh;
+}
+
+std::string validate(const Bvh& bvh, std::span<const Aabb> boxes, std::uint32_t max_leaf) {
+  LinkCheck nodes("node", bvh.nodes.size(), kMaxBvhDepth), items("item", boxes.size());
+  if (!bvh.nodes.empty()) nodes.reach(0);
+  const auto fault_of = [&](std::size_t i) -> std::string {
+    const BvhNode& node = bvh.nodes[i];
+    if (!nodes.is_reached(i)) return "no node before it links to it";
+    if (node.is_leaf()) {
+      if (node.count > max_leaf) return "a leaf of " + std::to_string(node.count) + " items";
+      if (std::size_t{node.first} + node.count > bvh.refs.size()) return "a leaf past the end";
+      for (std::uint32_t r = 0; r < node.count; ++r)
+        if (std::string fault = items.reach(bvh.refs[node.first + r]); !fault.empty()) return fault;
+    } else {
+      for (const std::size_t child : {std::size_t{node.first}, std::size_t{node.first} + 1})
+        if (std::string fault = nodes.reach(child, nodes.depth(i) + 1); !fault.empty())
+          return fault;
+    }
+    return node.box() == box_under(bvh, node, boxes) ? "" : "its box is not that of its content";
+  };
+  for (std::size_t i = 0; i < bvh.nodes.size(); ++i)
+    if (const std::string fault = fault_of(i); !fault.empty()) return nodes.name(i) + ": " + fault;
+  return items.find_missing();
 }
 
 }  // namespace mdk

@@ -60,8 +60,6 @@ inline std::uint32_t pack_srgb(const Vec3f& linear) {
          srgb_from_linear(linear.z) << 16 | 0xff000000u;
 }
 
-inline Vec3f multiply(const Vec3f& a, const Vec3f& b) { return {a.x * b.x, a.y * b.y, a.z * b.z}; }
-
 namespace detail {
 
 /// Texel index for coordinate `i` of `size` texels.

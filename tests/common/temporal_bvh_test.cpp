@@ -5,6 +5,7 @@
 #include <random>
 
 #include "common/structures/bvh.h"
+#include "common/structures/wide_bvh.h"
 
 namespace mdk {
 namespace {
@@ -26,9 +27,10 @@ std::vector<Aabb> two_poses(std::uint32_t count, std::uint32_t seed) {
   return boxes;
 }
 
-double cost_in(Bvh bvh, std::span<const Aabb> pose) {
-  refit_bvh(bvh, pose);
-  return sah_cost(bvh, kConfig);
+double cost_in(const Bvh& bvh, std::span<const Aabb> pose) {
+  WideBvh wide = collapse(bvh);
+  refit_wide_bvh(wide, pose);
+  return sah_cost(wide);
 }
 
 TEST(TemporalBvh, IsSoundInItsFirstPose) {

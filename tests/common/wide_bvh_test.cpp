@@ -40,6 +40,13 @@ TEST_P(WideBvhOfScene, IsSoundAfterItsBoxesMoveAndRefit) {
   EXPECT_EQ(bvh.items, items);
 }
 
+TEST_P(WideBvhOfScene, RefitsToItselfWhereNothingMoved) {
+  WideBvh bvh = build_wide_bvh(GetParam().boxes, 16);
+  for (WideBvhNode& node : bvh.nodes) node.set_box(0, {{-9, -9, -9}, {-8, -8, -8}});
+  refit_wide_bvh(bvh, GetParam().boxes);
+  EXPECT_EQ(validate(bvh, GetParam().boxes), "");
+}
+
 TEST_P(WideBvhOfScene, TopLevelHasEveryBoxInALeafOfItsOwn) {
   const std::vector<Aabb>& boxes = GetParam().boxes;
   TopLevel top;
@@ -137,6 +144,30 @@ TEST(WideBvh, IsTheSameForEveryNumberOfThreads) {
         ASSERT_EQ(several.nodes[i].child[c].index(), one.nodes[i].child[c].index());
       }
   }
+}
+
+TEST(WideBvhCost, IsThatOfTheFormulaOnAHandMadeTree) {
+  WideBvh bvh;
+  bvh.nodes.resize(2);
+  bvh.nodes[0].set_box(0, {{0, 0, 0}, {1, 1, 1}});  // area 6
+  bvh.nodes[0].child[0] = WideBvhChild::leaf(0);
+  bvh.nodes[0].set_box(1, {{2, 0, 0}, {4, 1, 1}});  // area 10
+  bvh.nodes[0].child[1] = WideBvhChild::inner(1);
+  bvh.nodes[0].count = 2;
+  bvh.nodes[1].set_box(0, {{2, 0, 0}, {4, 1, 1}});
+  bvh.nodes[1].child[0] = WideBvhChild::leaf(1);
+  bvh.nodes[1].count = 1;
+  EXPECT_NEAR(sah_cost(bvh), 1 + (6 + 10 + 10) / 18.0, 1e-12);
+  EXPECT_EQ(sah_cost(WideBvh{}), 0);
+}
+
+TEST(WideBvhCost, GrowsWhenItemsMoveApart) {
+  std::vector<Aabb> boxes = test::scattered_boxes(500, 1, 0.02f, 55);
+  WideBvh bvh = build_wide_bvh(boxes, 16);
+  const double before = sah_cost(bvh);
+  std::reverse(boxes.begin(), boxes.end());  // every box goes where another one was
+  refit_wide_bvh(bvh, boxes);
+  EXPECT_GT(sah_cost(bvh), 2 * before);
 }
 
 TEST(TopLevel, LeavesOutEmptyBoxes) {
