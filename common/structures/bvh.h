@@ -1,9 +1,11 @@
-// Bvh: a binary bounding volume hierarchy with 32-byte nodes, built by binned SAH and kept valid by
-// refitting.
+// Bvh: a binary bounding volume hierarchy with 32-byte nodes, built top down by the surface area
+// heuristic, over boxes as they are or over boxes that move. What is traced is a WideBvh made of
+// one.
 #pragma once
 
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "common/math/aabb.h"
@@ -21,12 +23,15 @@ struct BvhNode {
   Vec3f hi;
   std::uint32_t count = 0;
 
+  static BvhNode leaf(const Aabb& box, std::uint32_t first, std::uint32_t count) {
+    return {box.lo, first, box.hi, count};
+  }
+  static BvhNode inner(const Aabb& box, std::uint32_t children) {
+    return {box.lo, children, box.hi, 0};
+  }
+
   bool is_leaf() const { return count != 0; }
   Aabb box() const { return {lo, hi}; }
-  void set_box(const Aabb& b) {
-    lo = b.lo;
-    hi = b.hi;
-  }
 };
 static_assert(sizeof(BvhNode) == 32);
 
@@ -34,10 +39,6 @@ static_assert(sizeof(BvhNode) == 32);
 struct Bvh {
   std::vector<BvhNode> nodes;
   std::vector<std::uint32_t> refs;
-
-  std::size_t bytes() const {
-    return nodes.size() * sizeof(BvhNode) + refs.size() * sizeof(std::uint32_t);
-  }
 };
 
 struct BvhBuildConfig {
@@ -46,6 +47,11 @@ struct BvhBuildConfig {
   float intersect_cost = 1.0f;
   std::uint32_t max_leaf = 8;  ///< most references in a leaf, 1 to 4096
   std::uint32_t block = 1;     ///< items tested together: one test's cost for so many, or fewer
+
+  /// Tests of a block that a leaf of `count` items takes.
+  float leaf_tests(std::uint32_t count) const {
+    return static_cast<float>((count + block - 1) / block);
+  }
 };
 
 /// Binned SAH over box centroids (Wald 2007; Lo09 §4.1). Where bins cannot tell items apart, or
@@ -54,11 +60,19 @@ struct BvhBuildConfig {
 /// parallel. The result depends on the input alone.
 Bvh build_bvh(std::span<const Aabb> boxes, const BvhBuildConfig& config = {});
 
-/// New boxes for the same items, bottom up (Lo09 §4.2). `boxes` has one per item, as in the build.
-/// Cost: O(N).
-void refit_bvh(Bvh& bvh, std::span<const Aabb> boxes);
+/// A hierarchy for boxes that move, built for the SAH summed over several poses (T-SAH, Bittner and
+/// Meister 2015), so that refitting it serves all of them well. `boxes`: those of N items in each
+/// of `poses` poses, pose after pose; finite, none empty. Each pose counts alike: areas are
+/// relative to its root's. Splits are sought among the centroids of several poses. The nodes hold
+/// their boxes in the first pose. Uses config.bins (at most 64) and its costs. Cost: O(poses * N
+/// log N). The result depends on the input alone.
+Bvh build_temporal_bvh(std::span<const Aabb> boxes, std::uint32_t poses,
+                       const BvhBuildConfig& config);
 
-/// Expected cost of a ray that meets the root's box (SAH). A root without area counts as met whole.
-double sah_cost(const Bvh& bvh, const BvhBuildConfig& config);
+/// The first fault found in a hierarchy over `boxes`, in words; empty where there is none. Sound:
+/// every node is reached once, from a node before it, none deeper than kMaxBvhDepth; every item is
+/// in one leaf, and leaves have at most `max_leaf`; each box is the union of what is under it.
+/// Cost: O(N).
+std::string validate(const Bvh& bvh, std::span<const Aabb> boxes, std::uint32_t max_leaf);
 
 }  // namespace mdk

@@ -1,10 +1,12 @@
-// Binning for SAH builders (Wald 2007): items by centroid into slabs along each axis, and the
-// cheapest plane between slabs. Boxes are kept four floats wide, for the compiler's vector
-// operations.
+// Binning for the SAH (Wald 2007): items by centroid into slabs along each axis, and the cheapest
+// plane between slabs. Part of bvh_builder.cpp. Boxes are kept four floats wide, for the compiler's
+// vector operations.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <span>
@@ -23,20 +25,20 @@ struct alignas(16) Quad {
   static Quad filled(float a) { return {{a, a, a, a}}; }
 };
 
-inline float least(float a, float b) { return a < b ? a : b; }
-inline float greatest(float a, float b) { return a > b ? a : b; }
+inline float min(float a, float b) { return a < b ? a : b; }
+inline float max(float a, float b) { return a > b ? a : b; }
 
 // Loops that are left standing become one vector operation; unrolled ones do not.
-inline Quad least(const Quad& a, const Quad& b) {
+inline Quad min(const Quad& a, const Quad& b) {
   Quad r;
 #pragma GCC unroll 1
-  for (int k = 0; k < 4; ++k) r.v[k] = least(a.v[k], b.v[k]);
+  for (int k = 0; k < 4; ++k) r.v[k] = min(a.v[k], b.v[k]);
   return r;
 }
-inline Quad greatest(const Quad& a, const Quad& b) {
+inline Quad max(const Quad& a, const Quad& b) {
   Quad r;
 #pragma GCC unroll 1
-  for (int k = 0; k < 4; ++k) r.v[k] = greatest(a.v[k], b.v[k]);
+  for (int k = 0; k < 4; ++k) r.v[k] = max(a.v[k], b.v[k]);
   return r;
 }
 
@@ -46,14 +48,15 @@ struct QuadBox {
   Quad hi = Quad::filled(-std::numeric_limits<float>::infinity());
 
   void extend(const QuadBox& b) {
-    lo = least(lo, b.lo);
-    hi = greatest(hi, b.hi);
+    lo = min(lo, b.lo);
+    hi = max(hi, b.hi);
   }
   void extend(const Quad& p) {
-    lo = least(lo, p);
-    hi = greatest(hi, p);
+    lo = min(lo, p);
+    hi = max(hi, p);
   }
   Aabb box() const { return {{lo.v[0], lo.v[1], lo.v[2]}, {hi.v[0], hi.v[1], hi.v[2]}}; }
+  bool has_area() const { return half_area() > 0; }
   float half_area() const {
     const float x = hi.v[0] - lo.v[0], y = hi.v[1] - lo.v[1], z = hi.v[2] - lo.v[2];
     return x * y + (x + y) * z;
@@ -91,6 +94,10 @@ class BuildItem {
 struct RunBounds {
   QuadBox box, centroids;
 
+  RunBounds() = default;
+  explicit RunBounds(std::span<const BuildItem> items) {
+    for (const BuildItem& item : items) add(item);
+  }
   void add(const BuildItem& item) {
     box.extend(item.box());
     centroids.extend(item.centroid());
@@ -104,7 +111,16 @@ struct RunBounds {
 /// Which bin of each axis a centroid falls into.
 class Binning {
  public:
-  Binning(const QuadBox& centroids, int bins);
+  Binning(const QuadBox& centroids, int bins)
+      : lo_(centroids.lo), last_(Quad::filled(static_cast<float>(bins - 1))) {
+    // Where the range is a point, or too short or too long to be scaled, all fall into bin 0.
+    const auto scale = [&](float lo, float hi) {
+      const float per_length = static_cast<float>(bins) / (hi - lo);
+      return std::isfinite(per_length) ? per_length : 0.0f;
+    };
+    for (std::size_t k = 0; k < 3; ++k) scale_.v[k] = scale(centroids.lo.v[k], centroids.hi.v[k]);
+    scale_.v[3] = 0;
+  }
 
   int bins() const { return static_cast<int>(last_.v[0]) + 1; }
   /// Centroids along the axis all fall into bin 0.
@@ -113,7 +129,7 @@ class Binning {
     std::array<std::int32_t, 4> b;
 #pragma GCC unroll 1
     for (std::size_t k = 0; k < 4; ++k) {
-      b[k] = static_cast<std::int32_t>(least((c.v[k] - lo_.v[k]) * scale_.v[k], last_.v[k]));
+      b[k] = static_cast<std::int32_t>(min((c.v[k] - lo_.v[k]) * scale_.v[k], last_.v[k]));
     }
     return b;
   }
@@ -122,6 +138,7 @@ class Binning {
   Quad lo_, scale_, last_;
 };
 
+/// A plane between bins; as it begins, none.
 struct SahSplit {
   float cost = std::numeric_limits<float>::infinity();
   std::size_t axis = 0;
@@ -134,15 +151,81 @@ struct SahSplit {
 /// The bins of a run of items, along all three axes.
 class Bins {
  public:
-  void clear(int bins);
-  void add(std::span<const BuildItem> items, const Binning& binning);
-  void merge(const Bins& other);
+  void clear(int bins) {
+    bins_ = static_cast<std::size_t>(bins);
+    for (std::vector<Bin>& axis : bin_) {
+      if (axis.size() < bins_) axis.resize(bins_);
+      std::fill_n(axis.begin(), bins_, Bin{});
+    }
+    if (cost_below_.size() < bins_) cost_below_.resize(bins_);
+  }
 
-  /// The plane where measure * tests summed over both sides is least; `box` is that of all items.
-  /// Not found where no plane parts them, or costs are past the range of float.
-  SahSplit best_split(const Binning& binning, const QuadBox& box, const BvhBuildConfig& config);
-  /// Items in bins below `plane`.
-  std::uint32_t count_below(std::size_t axis, std::int32_t plane) const;
+  void add(std::span<const BuildItem> items, const Binning& binning) {
+    Bin* const x = bin_[0].data();
+    Bin* const y = bin_[1].data();
+    Bin* const z = bin_[2].data();
+    const auto put = [](Bin& bin, const QuadBox& box) {
+      bin.box.extend(box);
+      ++bin.count;
+    };
+    for (const BuildItem& item : items) {
+      const auto b = binning.bin(item.centroid());
+      const QuadBox box = item.box();
+      put(x[b[0]], box);
+      put(y[b[1]], box);
+      put(z[b[2]], box);
+    }
+  }
+
+  void merge(const Bins& other) {
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      for (std::size_t b = 0; b < bins_; ++b) {
+        bin_[axis][b].box.extend(other.bin_[axis][b].box);
+        bin_[axis][b].count += other.bin_[axis][b].count;
+      }
+  }
+
+  /// The plane where measure * tests summed over both sides is smallest; `whole` is the box of all
+  /// items. Not found where no plane parts them, or costs are past the range of float.
+  SahSplit best_split(const Binning& binning, const QuadBox& whole, const BvhBuildConfig& config) {
+    // By area, or by length where all boxes lie on a line and no area is left to compare.
+    const bool by_area = whole.has_area();
+    const auto cost = [&](const QuadBox& box, std::uint32_t count) {
+      const float measure = by_area ? box.half_area() : box.edge_length();
+      return count == 0 ? 0.0f : measure * config.leaf_tests(count);
+    };
+    SahSplit best;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if (binning.is_blind(axis)) continue;
+      const std::vector<Bin>& bins = bin_[axis];
+      QuadBox box;
+      std::uint32_t count = 0;
+      for (std::size_t plane = 1; plane < bins_; ++plane) {
+        box.extend(bins[plane - 1].box);
+        count += bins[plane - 1].count;
+        cost_below_[plane] = cost(box, count);
+      }
+      const std::uint32_t all = count + bins[bins_ - 1].count;
+      box = {};
+      count = 0;
+      for (std::size_t plane = bins_ - 1; plane > 0; --plane) {
+        box.extend(bins[plane].box);
+        count += bins[plane].count;
+        const float sum = cost_below_[plane] + cost(box, count);
+        if (count != 0 && count != all && sum < best.cost)
+          best = {sum, axis, static_cast<std::int32_t>(plane), all - count};
+      }
+    }
+    return best;
+  }
+
+  /// Items in bins below the plane.
+  std::uint32_t count_below(const SahSplit& split) const {
+    std::uint32_t count = 0;
+    for (std::size_t b = 0; b < static_cast<std::size_t>(split.plane); ++b)
+      count += bin_[split.axis][b].count;
+    return count;
+  }
 
  private:
   struct Bin {
@@ -153,10 +236,5 @@ class Bins {
   std::array<std::vector<Bin>, 3> bin_;
   std::vector<float> cost_below_;
 };
-
-/// What a leaf of `count` items costs, in tests of a block.
-inline float block_tests(std::uint32_t count, std::uint32_t block) {
-  return static_cast<float>((count + block - 1) / block);
-}
 
 }  // namespace mdk

@@ -1,14 +1,17 @@
-// Top-down binned SAH. Large nodes are binned and parted by all threads together, in fixed chunks;
-// what is left below them are subtrees, each built by one thread. Who builds what depends on the
-// input alone, and so does the result. Items go to and fro between two arrays: a node's are read
-// from one and written, parted, to the other.
+// build_bvh(): top-down binned SAH. Large nodes are binned and parted by all threads together, in
+// fixed chunks; what is left below them are subtrees, each built by one thread. Who builds what
+// depends on the input alone, and so does the result. Items go to and fro between two arrays: a
+// node's are read from one and written, parted, to the other.
 #include <algorithm>
 #include <cassert>
+#include <optional>
 #include <utility>
 
 #include "common/base/parallel.h"
 #include "common/structures/bvh.h"
 #include "common/structures/bvh_bins.h"
+#include "common/structures/link_check.h"
+#include "common/structures/top_down.h"
 
 namespace mdk {
 namespace {
@@ -23,13 +26,17 @@ struct Run {
   RunBounds bounds;
 
   std::uint32_t count() const { return end - begin; }
+  std::size_t chunk_count() const { return (count() + kChunkItems - 1) / kChunkItems; }
+  Aabb box() const { return bounds.box.box(); }
 };
 
-/// How a node is divided: by a plane between bins, or in the middle.
-struct Division {
-  bool is_leaf = false;
-  bool halved = false;
-  SahSplit split;
+struct Halves {
+  Run below, above;
+
+  /// Of `run`, without bounds.
+  Halves(const Run& run, std::uint32_t middle, std::uint32_t source)
+      : below{run.begin, middle, run.depth + 1, source, {}},
+        above{middle, run.end, run.depth + 1, source, {}} {}
 };
 
 /// The two arrays, and what decides how a run is divided: shared by all threads.
@@ -49,11 +56,14 @@ class Items {
   std::span<const BuildItem> of(const Run& run) const {
     return std::span(arrays_[run.source]).subspan(run.begin, run.count());
   }
-  std::span<BuildItem> of(const Run& run) {
-    return std::span(arrays_[run.source]).subspan(run.begin, run.count());
-  }
   /// Where the items of `run` go.
   BuildItem* destination(const Run& run) { return arrays_[run.source ^ 1u].data(); }
+
+  bool is_surely_leaf(const Run& run) const {
+    return run.count() == 1 || run.depth == kMaxBvhDepth ||
+           (run.count() <= config_.block && run.count() <= config_.max_leaf &&
+            config_.traversal_cost >= 0);
+  }
 
   /// More bins than twice the items, or than a few per block, would tell nothing new.
   Binning choose_bins(const Run& run) const {
@@ -64,31 +74,38 @@ class Items {
             static_cast<int>(std::min(useful, static_cast<std::uint64_t>(config_.bins)))};
   }
 
-  Division divide(const Run& run, const Binning& binning, Bins& bins) const {
-    Division division{.split = bins.best_split(binning, run.bounds.box, config_)};
-    const SahSplit& split = division.split;
+  /// The cheapest split, or nothing where a leaf is cheaper. A split that is not found() stands for
+  /// one in the middle.
+  std::optional<SahSplit> choose_split(const Run& run, const Binning& binning, Bins& bins) const {
+    const QuadBox& box = run.bounds.box;
+    const SahSplit split = bins.best_split(binning, box, config_);
     if (run.count() <= config_.max_leaf) {
-      const QuadBox& box = run.bounds.box;
-      const float whole = box.half_area() > 0 ? box.half_area() : box.edge_length();
-      const float leaf = config_.intersect_cost * block_tests(run.count(), config_.block) * whole;
+      const float whole = box.has_area() ? box.half_area() : box.edge_length();
+      const float leaf = config_.intersect_cost * config_.leaf_tests(run.count()) * whole;
       const float parted = config_.traversal_cost * whole + config_.intersect_cost * split.cost;
-      division.is_leaf = !split.found() || parted >= leaf;
+      if (!split.found() || parted >= leaf) return {};
     }
     // A split so lopsided that its larger part might not fit under the depth limit is not taken.
     const std::uint32_t larger = std::max(split.below_count, run.count() - split.below_count);
-    division.halved = !split.found() || larger > most_items_at(run.depth + 1);
-    return division;
+    return larger > max_items_at(run.depth + 1) ? SahSplit{} : split;
   }
 
-  bool is_surely_leaf(const Run& run) const {
-    return run.count() == 1 || run.depth == kMaxBvhDepth ||
-           (run.count() <= config_.block && run.count() <= config_.max_leaf &&
-            config_.traversal_cost >= 0);
+  /// Object median along the widest axis.
+  Halves halve(const Run& run) {
+    const auto all = std::span(arrays_[run.source]).subspan(run.begin, run.count());
+    part_at_median(
+        all, run.bounds.centroids.box(),
+        [](const BuildItem& item, std::size_t axis) { return item.centroid().v[axis]; },
+        [](const BuildItem& item) { return item.index(); });
+    Halves halves(run, run.begin + run.count() / 2, run.source);
+    halves.below.bounds = RunBounds(of(halves.below));
+    halves.above.bounds = RunBounds(of(halves.above));
+    return halves;
   }
 
  private:
   /// How many items a node of this depth can hold if it is halved from there on.
-  std::uint64_t most_items_at(std::uint32_t depth) const {
+  std::uint64_t max_items_at(std::uint32_t depth) const {
     const std::uint32_t levels = std::min(kMaxBvhDepth - depth, 32u);
     return std::uint64_t{config_.max_leaf} << levels;
   }
@@ -97,68 +114,38 @@ class Items {
   std::array<std::vector<BuildItem>, 2> arrays_;
 };
 
-std::pair<Run, Run> children_of(const Run& run, std::uint32_t middle, std::uint32_t source) {
-  return {Run{run.begin, middle, run.depth + 1, source, {}},
-          Run{middle, run.end, run.depth + 1, source, {}}};
-}
-
-RunBounds bounds_of(std::span<const BuildItem> items) {
-  RunBounds bounds;
-  for (const BuildItem& item : items) bounds.add(item);
-  return bounds;
-}
-
-/// Object median along the widest axis; equal centroids are told apart by number.
-std::pair<Run, Run> halve(Items& items, const Run& run) {
-  const Vec3f extent = run.bounds.centroids.box().extent();
-  std::size_t axis = 0;
-  for (std::size_t a = 1; a < 3; ++a)
-    if (extent[a] > extent[axis]) axis = a;
-  const auto all = items.of(run);
-  const std::uint32_t half = run.count() / 2;
-  std::nth_element(all.begin(), all.begin() + half, all.end(),
-                   [axis](const BuildItem& a, const BuildItem& b) {
-                     return std::pair(a.centroid().v[axis], a.index()) <
-                            std::pair(b.centroid().v[axis], b.index());
-                   });
-  auto [below, above] = children_of(run, run.begin + half, run.source);
-  below.bounds = bounds_of(items.of(below));
-  above.bounds = bounds_of(items.of(above));
-  return {below, above};
-}
-
-/// A subtree by one thread: nodes with links among themselves, leaves in the common references.
-class SubtreeBuilder {
+/// Divides the runs of a subtree, by one thread; writes the references of its leaves.
+class SubtreeSplitter {
  public:
-  SubtreeBuilder(Items& items, std::span<std::uint32_t> refs) : items_(items), refs_(refs) {}
+  using Part = Run;
+  using Split = Halves;
 
-  std::vector<BvhNode> build(const Run& run) {
-    nodes_.reserve(4 * (run.count() / items_.config().max_leaf + 1));
-    nodes_.resize(1);
-    build_node(0, run);
-    return std::move(nodes_);
-  }
+  SubtreeSplitter(Items& items, std::span<std::uint32_t> refs) : items_(items), refs_(refs) {}
 
- private:
-  void build_node(std::uint32_t index, const Run& run) {
-    nodes_[index].set_box(run.bounds.box.box());
-    if (items_.is_surely_leaf(run)) return make_leaf(index, run);
+  std::optional<Halves> try_split(const Run& run) {
+    if (items_.is_surely_leaf(run)) return {};
     const Binning binning = items_.choose_bins(run);
     bins_.clear(binning.bins());
     bins_.add(items_.of(run), binning);
-    const Division division = items_.divide(run, binning, bins_);
-    if (division.is_leaf) return make_leaf(index, run);
-    const auto [below, above] =
-        division.halved ? halve(items_, run) : part(run, binning, division.split);
-    const auto children = static_cast<std::uint32_t>(nodes_.size());
-    nodes_[index].first = children;
-    nodes_.resize(children + 2u);
-    build_node(children, below);
-    build_node(children + 1, above);
+    const std::optional<SahSplit> split = items_.choose_split(run, binning, bins_);
+    if (!split) return {};
+    return split->found() ? part(run, binning, *split) : items_.halve(run);
   }
 
+  BvhNode make_inner(const Run& run, const Halves&, std::uint32_t children) const {
+    return BvhNode::inner(run.box(), children);
+  }
+
+  BvhNode make_leaf(const Run& run) {
+    const auto first = refs_.begin() + run.begin;
+    std::ranges::transform(items_.of(run), first, &BuildItem::index);
+    std::sort(first, first + run.count());
+    return BvhNode::leaf(run.box(), run.begin, run.count());
+  }
+
+ private:
   /// Without branches: every item is written at both ends, and one end moves on.
-  std::pair<Run, Run> part(const Run& run, const Binning& binning, const SahSplit& split) {
+  Halves part(const Run& run, const Binning& binning, const SahSplit& split) {
     BuildItem* const to = items_.destination(run);
     std::uint32_t low = run.begin, high = run.end;
     for (const BuildItem& item : items_.of(run)) {
@@ -168,114 +155,83 @@ class SubtreeBuilder {
       low += is_below;
       high -= !is_below;
     }
-    auto [below, above] = children_of(run, low, run.source ^ 1u);
-    below.bounds = bounds_of(items_.of(below));
-    above.bounds = bounds_of(items_.of(above));
-    return {below, above};
-  }
-
-  void make_leaf(std::uint32_t index, const Run& run) {
-    const auto first = refs_.begin() + run.begin;
-    std::transform(items_.of(run).begin(), items_.of(run).end(), first,
-                   [](const BuildItem& item) { return item.index(); });
-    std::sort(first, first + run.count());
-    nodes_[index].first = run.begin;
-    nodes_[index].count = run.count();
+    Halves halves(run, low, run.source ^ 1u);
+    halves.below.bounds = RunBounds(items_.of(halves.below));
+    halves.above.bounds = RunBounds(items_.of(halves.above));
+    return halves;
   }
 
   Items& items_;
   std::span<std::uint32_t> refs_;
-  std::vector<BvhNode> nodes_;
   Bins bins_;
 };
 
-class BvhBuilder {
+/// Divides large runs, each by all threads. Its leaves stand for the subtrees that are left, by
+/// number.
+class LargeSplitter {
  public:
-  BvhBuilder(std::span<const Aabb> boxes, const BvhBuildConfig& config) : items_(boxes, config) {
-    assert(config.bins >= 2 && config.bins <= kMaxBins);
-    assert(config.max_leaf >= 1 && config.block >= 1);
-    bvh_.refs.resize(boxes.size());
+  using Part = Run;
+  using Split = Halves;
+
+  explicit LargeSplitter(Items& items) : items_(items) {}
+
+  /// All `count` items.
+  Run whole(std::uint32_t count) {
+    Run all{0, count, 0, 0, {}};
+    chunks_.resize(all.chunk_count());
+    for_chunks(all, [](Chunk& chunk, auto items) { chunk.below = RunBounds(items); });
+    for (const Chunk& chunk : chunks_) all.bounds.merge(chunk.below);
+    return all;
   }
+  const std::vector<Run>& subtrees() const { return subtrees_; }
 
-  Bvh build() {
-    if (bvh_.refs.empty()) return {};
-    Run all{0, static_cast<std::uint32_t>(bvh_.refs.size()), 0, 0, {}};
-    all.bounds = chunk_bounds(all);
-    bvh_.nodes.resize(1);
-    build_top(0, all);
-    build_subtrees();
-    return std::move(bvh_);
-  }
-
- private:
-  struct Subtree {
-    std::uint32_t node;
-    Run run;
-    std::vector<BvhNode> nodes;
-  };
-  /// What one chunk of a large node holds.
-  struct Chunk {
-    Bins bins;
-    std::uint32_t first_below = 0, first_above = 0;  ///< where its items go
-    RunBounds below, above;
-  };
-
-  void build_top(std::uint32_t index, const Run& run) {
-    if (run.count() <= kSubtreeItems) {
-      subtrees_.push_back({index, run, {}});
-      return;
-    }
-    bvh_.nodes[index].set_box(run.bounds.box.box());
-    const auto [below, above] = part_large(run);
-    const auto children = static_cast<std::uint32_t>(bvh_.nodes.size());
-    bvh_.nodes[index].first = children;
-    bvh_.nodes.resize(children + 2u);
-    build_top(children, below);
-    build_top(children + 1, above);
-  }
-
-  template <class Body>
-  void for_chunks(const Run& run, const Body& body) {
-    parallel_chunks(run.count(), kChunkItems, [&](std::size_t begin, std::size_t end) {
-      body(chunks_[begin / kChunkItems],
-           std::span<const BuildItem>(items_.of(run)).subspan(begin, end - begin));
-    });
-  }
-
-  RunBounds chunk_bounds(const Run& run) {
-    chunks_.resize((run.count() + kChunkItems - 1) / kChunkItems);
-    for_chunks(run, [](Chunk& chunk, auto items) { chunk.below = bounds_of(items); });
-    RunBounds bounds;
-    for (const Chunk& chunk : chunks_) bounds.merge(chunk.below);
-    return bounds;
-  }
-
-  std::pair<Run, Run> part_large(const Run& run) {
+  std::optional<Halves> try_split(const Run& run) {
+    if (run.count() <= kSubtreeItems) return {};
     const Binning binning = items_.choose_bins(run);
-    const std::size_t count = (run.count() + kChunkItems - 1) / kChunkItems;
-    if (chunks_.size() < count) chunks_.resize(count);
     for_chunks(run, [&](Chunk& chunk, auto items) {
       chunk.bins.clear(binning.bins());
       chunk.bins.add(items, binning);
     });
     Bins all;
     all.clear(binning.bins());
-    for (std::size_t c = 0; c < count; ++c) all.merge(chunks_[c].bins);
-    const Division division = items_.divide(run, binning, all);
-    if (division.halved) return halve(items_, run);
-    return scatter(run, binning, division.split);
+    for (std::size_t c = 0; c < run.chunk_count(); ++c) all.merge(chunks_[c].bins);
+    const std::optional<SahSplit> split = items_.choose_split(run, binning, all);
+    assert(split && "leaves are smaller than large runs");
+    return split->found() ? scatter(run, binning, *split) : items_.halve(run);
   }
 
-  /// Each chunk's items go to places of their own, which the bins' counts foretell.
-  std::pair<Run, Run> scatter(const Run& run, const Binning& binning, const SahSplit& split) {
-    auto [below, above] = children_of(run, run.begin + split.below_count, run.source ^ 1u);
-    const std::size_t count = (run.count() + kChunkItems - 1) / kChunkItems;
-    std::uint32_t low = below.begin, high = above.begin;
-    for (std::size_t c = 0; c < count; ++c) {
-      const std::size_t begin = c * kChunkItems;
-      const auto size =
-          static_cast<std::uint32_t>(std::min<std::size_t>(kChunkItems, run.count() - begin));
-      const std::uint32_t in_below = chunks_[c].bins.count_below(split.axis, split.plane);
+  BvhNode make_inner(const Run& run, const Halves&, std::uint32_t children) const {
+    return BvhNode::inner(run.box(), children);
+  }
+
+  BvhNode make_leaf(const Run& run) {
+    subtrees_.push_back(run);
+    return BvhNode::leaf(run.box(), static_cast<std::uint32_t>(subtrees_.size() - 1), run.count());
+  }
+
+ private:
+  /// What one chunk of a run holds.
+  struct Chunk {
+    Bins bins;
+    std::uint32_t first_below = 0, first_above = 0;  ///< where its items go
+    RunBounds below, above;
+  };
+
+  template <class Body>
+  void for_chunks(const Run& run, const Body& body) {
+    parallel_chunks(run.count(), kChunkItems, [&](std::size_t begin, std::size_t end) {
+      body(chunks_[begin / kChunkItems], items_.of(run).subspan(begin, end - begin));
+    });
+  }
+
+  /// Each chunk's items go to places of their own, which the bins' counts give in advance.
+  Halves scatter(const Run& run, const Binning& binning, const SahSplit& split) {
+    Halves halves(run, run.begin + split.below_count, run.source ^ 1u);
+    std::uint32_t low = halves.below.begin, high = halves.above.begin;
+    for (std::size_t c = 0; c < run.chunk_count(); ++c) {
+      const auto size = static_cast<std::uint32_t>(
+          std::min<std::size_t>(kChunkItems, run.count() - c * kChunkItems));
+      const std::uint32_t in_below = chunks_[c].bins.count_below(split);
       chunks_[c].first_below = low;
       chunks_[c].first_above = high;
       low += in_below;
@@ -291,37 +247,90 @@ class BvhBuilder {
         (is_below ? chunk.below : chunk.above).add(item);
       }
     });
-    for (std::size_t c = 0; c < count; ++c) {
-      below.bounds.merge(chunks_[c].below);
-      above.bounds.merge(chunks_[c].above);
+    for (std::size_t c = 0; c < run.chunk_count(); ++c) {
+      halves.below.bounds.merge(chunks_[c].below);
+      halves.above.bounds.merge(chunks_[c].above);
     }
-    return {below, above};
+    return halves;
   }
 
-  void build_subtrees() {
-    parallel_chunks(subtrees_.size(), 1, [&](std::size_t i, std::size_t) {
-      subtrees_[i].nodes = SubtreeBuilder(items_, bvh_.refs).build(subtrees_[i].run);
-    });
-    for (Subtree& subtree : subtrees_) {
-      // Node 0 of a subtree has its place; the others follow what there is.
-      const auto shift = static_cast<std::uint32_t>(bvh_.nodes.size()) - 1;
-      for (BvhNode& node : subtree.nodes)
-        if (!node.is_leaf()) node.first += shift;
-      bvh_.nodes[subtree.node] = subtree.nodes[0];
-      bvh_.nodes.insert(bvh_.nodes.end(), subtree.nodes.begin() + 1, subtree.nodes.end());
-    }
-  }
-
-  Items items_;
-  Bvh bvh_;
-  std::vector<Subtree> subtrees_;
+  Items& items_;
+  std::vector<Run> subtrees_;
   std::vector<Chunk> chunks_;
 };
+
+/// Puts each subtree where its leaf stands among `nodes`: its root in the leaf's place, the others,
+/// whose links count among themselves, behind what there is.
+void attach(std::vector<std::vector<BvhNode>> subtrees, std::vector<BvhNode>& nodes) {
+  std::vector<std::size_t> places(subtrees.size());
+  for (std::size_t i = 0; i < nodes.size(); ++i)
+    if (nodes[i].is_leaf()) places[nodes[i].first] = i;
+  for (std::size_t s = 0; s < subtrees.size(); ++s) {
+    std::vector<BvhNode>& subtree = subtrees[s];
+    const auto shift = static_cast<std::uint32_t>(nodes.size()) - 1;
+    for (BvhNode& node : subtree)
+      if (!node.is_leaf()) node.first += shift;
+    nodes[places[s]] = subtree[0];
+    nodes.insert(nodes.end(), subtree.begin() + 1, subtree.end());
+  }
+}
+
+/// The union of what is under a node.
+Aabb box_under(const Bvh& bvh, const BvhNode& node, std::span<const Aabb> boxes) {
+  Aabb box;
+  if (node.is_leaf()) {
+    for (std::uint32_t r = 0; r < node.count; ++r) box.extend(boxes[bvh.refs[node.first + r]]);
+  } else {
+    box = bvh.nodes[node.first].box();
+    box.extend(bvh.nodes[node.first + 1].box());
+  }
+  return box;
+}
 
 }  // namespace
 
 Bvh build_bvh(std::span<const Aabb> boxes, const BvhBuildConfig& config) {
-  return BvhBuilder(boxes, config).build();
+  assert(config.bins >= 2 && config.bins <= kMaxBins);
+  assert(config.max_leaf >= 1 && config.max_leaf <= kSubtreeItems && config.block >= 1);
+  Bvh bvh;
+  if (boxes.empty()) return bvh;
+  bvh.refs.resize(boxes.size());
+  Items items(boxes, config);
+  LargeSplitter large(items);
+  bvh.nodes =
+      build_top_down<BvhNode>(large, large.whole(static_cast<std::uint32_t>(boxes.size())), 1);
+  std::vector<std::vector<BvhNode>> subtrees(large.subtrees().size());
+  parallel_chunks(subtrees.size(), 1, [&](std::size_t i, std::size_t) {
+    const Run& run = large.subtrees()[i];
+    SubtreeSplitter splitter(items, bvh.refs);
+    subtrees[i] = build_top_down<BvhNode>(splitter, run, 4 * (run.count() / config.max_leaf + 1));
+  });
+  attach(std::move(subtrees), bvh.nodes);
+  assert(validate(bvh, boxes, config.max_leaf).empty());
+  return bvh;
+}
+
+std::string validate(const Bvh& bvh, std::span<const Aabb> boxes, std::uint32_t max_leaf) {
+  LinkCheck nodes("node", bvh.nodes.size(), kMaxBvhDepth), items("item", boxes.size());
+  if (!bvh.nodes.empty()) nodes.reach(0);
+  const auto fault_of = [&](std::size_t i) -> std::string {
+    const BvhNode& node = bvh.nodes[i];
+    if (!nodes.is_reached(i)) return "no node before it links to it";
+    if (node.is_leaf()) {
+      if (node.count > max_leaf) return "a leaf of " + std::to_string(node.count) + " items";
+      if (std::size_t{node.first} + node.count > bvh.refs.size()) return "a leaf past the end";
+      for (std::uint32_t r = 0; r < node.count; ++r)
+        if (std::string fault = items.reach(bvh.refs[node.first + r]); !fault.empty()) return fault;
+    } else {
+      for (const std::size_t child : {std::size_t{node.first}, std::size_t{node.first} + 1})
+        if (std::string fault = nodes.reach(child, nodes.depth(i) + 1); !fault.empty())
+          return fault;
+    }
+    return node.box() == box_under(bvh, node, boxes) ? "" : "its box is not that of its content";
+  };
+  for (std::size_t i = 0; i < bvh.nodes.size(); ++i)
+    if (const std::string fault = fault_of(i); !fault.empty()) return nodes.name(i) + ": " + fault;
+  return items.find_missing();
 }
 
 }  // namespace mdk

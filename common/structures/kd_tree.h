@@ -1,10 +1,12 @@
-// KdTree: 8-byte nodes, leaves as runs in one list of references. The same form serves fuzzy trees,
-// static trees of one pose, and the top level over clusters.
+// KdTree: 8-byte nodes, leaves as runs in one list of references; built over boxes by the surface
+// area heuristic (MacDonald and Booth 1989) with sorted event sweeps (Wald and Havran 2006). The
+// same form serves fuzzy trees, static trees of one pose, and the top level over clusters.
 #pragma once
 
 #include <bit>
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "common/math/aabb.h"
@@ -57,9 +59,54 @@ struct KdTree {
   }
 };
 
-/// Whether a tree from outside can be walked blindly: links forward and each node reached once,
-/// depth within kMaxKdDepth, reference runs inside `refs` and together no longer than it, each
-/// reference in [ref_begin, ref_end), splits finite. Cost: O(nodes + refs).
-bool is_well_formed(const KdTreeView& tree, std::uint32_t ref_begin, std::uint32_t ref_end);
+/// Area of a box as the rays see it: 2 (xy ex ey + yz ey ez + zx ez ex). Ones give the plain
+/// surface area; a cluster's basis stretches its axes unevenly, which its weights undo
+/// (docs/method.md, cost).
+struct AreaWeights {
+  double xy = 1, yz = 1, zx = 1;
+
+  AreaWeights operator*(double f) const { return {xy * f, yz * f, zx * f}; }
+  double area(const Vec3d& extent) const {
+    return 2 * (xy * extent.x * extent.y + yz * extent.y * extent.z + zx * extent.z * extent.x);
+  }
+};
+
+struct KdBuildConfig {
+  float traversal_cost = 1.0f;  ///< of one step, in units of...
+  float intersect_cost = 1.5f;  ///< ...one item's test being this much
+  float empty_bonus = 0.8f;     ///< factor on the cost of a split that cuts off empty space
+  std::uint32_t max_depth = 0;  ///< 0: 8 + 1.3 log2 N; never past kMaxKdDepth
+  AreaWeights area{};
+};
+
+/// A tree whose leaves refer to `ref_base` + index into `boxes`. Every point of a box lies in the
+/// closed cell of a leaf that lists it; a tree lists at most 8 references per box. Bounds: the
+/// union of the boxes. Boxes must be finite; empty ones are left out. With no boxes: one empty
+/// leaf. The result depends on the input alone. Throws Error (kOverLimit) past 2^27 boxes. Cost:
+/// O(N log N).
+KdTree build_kd_tree(std::span<const Aabb> boxes, std::uint32_t ref_base = 0,
+                     const KdBuildConfig& config = {});
+
+/// Expected cost of a ray that hits the tree's bounds, in the config's units (SAH).
+double sah_cost(const KdTreeView& tree, const KdBuildConfig& config);
+
+/// The first reason why a tree from outside cannot be walked blindly, in words; empty where there
+/// is none. Sound: links forward and each node reached once, depth within kMaxKdDepth, reference
+/// runs inside `refs` and together no longer than it, each reference in [ref_begin, ref_end),
+/// splits finite. Cost: O(nodes + refs).
+std::string validate(const KdTreeView& tree, std::uint32_t ref_begin, std::uint32_t ref_end);
+
+/// The same, and whether it is a tree over `boxes`, as build_kd_tree() makes one: bounds are their
+/// union, splits lie strictly inside their cells, which therefore partition the bounds; a leaf
+/// lists no box that its closed cell does not touch, and none twice; every point of a box lies in
+/// the closed cell of a leaf that lists it, and so every cell a box enters has it. Cost: O(levels *
+/// refs) and the square of what a leaf lists.
+std::string validate(const KdTreeView& tree, std::span<const Aabb> boxes,
+                     std::uint32_t ref_base = 0);
+
+/// To be renamed where it is used.
+inline bool is_well_formed(const KdTreeView& tree, std::uint32_t ref_begin, std::uint32_t ref_end) {
+  return validate(tree, ref_begin, ref_end).empty();
+}
 
 }  // namespace mdk

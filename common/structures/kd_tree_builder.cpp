@@ -1,18 +1,20 @@
-// The greedy SAH descent: sweep every plane where a box starts or ends, take the cheapest, hand
-// each child its events in order, stop where no split pays. Cost: a constant number of passes over
-// the events of each level, O(N log N) in all.
-#include "common/structures/kd_tree_builder.h"
-
+// build_kd_tree(): sweep every plane where a box starts or ends, take the cheapest, hand each child
+// its events in order, stop where no split pays. Boxes are clipped to the cell on the way down.
+// Cost: a constant number of passes over the events of each level, O(N log N) in all.
 #include <algorithm>
 #include <array>
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <string>
+#include <utility>
 
 #include "common/base/error.h"
 #include "common/base/parallel.h"
 #include "common/structures/kd_events.h"
+#include "common/structures/kd_tree.h"
+#include "common/structures/top_down.h"
 
 namespace mdk {
 namespace {
@@ -28,7 +30,7 @@ constexpr std::size_t kMaxBoxes = KdEvent::kMaxItems / kMaxRefsPerItem;
 /// Child links have 30 bits.
 constexpr std::size_t kMaxNodes = std::size_t{1} << 30;
 
-/// Chance that a ray which meets a cell also meets the slice of it up to a plane. Area is linear in
+/// Chance that a ray which hits a cell also hits the slice of it up to a plane. Area is linear in
 /// the extent along the plane's axis: a slice of thickness t (of 1) has the share q + (1 - q) t,
 /// q being the share of the two end faces. A cell without area (a line) counts by length: q = 0.
 class SliceOdds {
@@ -52,7 +54,7 @@ class SliceOdds {
 };
 
 /// A plane, and what goes where.
-struct Split {
+struct Plane {
   double cost = std::numeric_limits<double>::infinity();
   std::size_t axis = 0;
   float position = 0;
@@ -66,7 +68,13 @@ struct Cell {
   std::array<std::size_t, 3> begin{};
   std::uint32_t count = 0;
   std::uint32_t depth = 0;
-  std::uint64_t max_refs = 0;  ///< what its leaves may list in all; never less than `count`
+  std::uint64_t max_refs = 0;  ///< of the tree when this cell is done
+};
+
+struct Cells {
+  std::size_t axis;
+  float position;
+  Cell below, above;
 };
 
 [[maybe_unused]] bool is_finite(const Vec3f& p) {
@@ -79,81 +87,78 @@ std::uint32_t depth_limit(std::uint32_t wanted, std::uint32_t count) {
   return std::min(wanted == 0 ? usual : wanted, kMaxKdDepth);
 }
 
-class KdTreeBuilder {
+class KdSplitter {
  public:
-  KdTreeBuilder(std::span<const Aabb> boxes, std::uint32_t ref_base, const KdBuildConfig& config)
+  using Part = Cell;
+  using Split = Cells;
+
+  KdSplitter(std::span<const Aabb> boxes, std::uint32_t ref_base, const KdBuildConfig& config,
+             std::uint32_t max_depth)
       : config_(config),
         ref_base_(ref_base),
+        max_depth_(max_depth),
         stacks_{KdEventStack(boxes, 0), KdEventStack(boxes, 1), KdEventStack(boxes, 2)},
         sides_(boxes.size(), kBoth) {}
 
-  KdTree build(const Aabb& bounds, std::uint32_t count) {
-    max_depth_ = depth_limit(config_.max_depth, count);
-    tree_.bounds = bounds;
-    tree_.nodes.resize(1);
-    build_node(0, {bounds, {}, count, 0, kMaxRefsPerItem * count});
-    return std::move(tree_);
+  std::vector<std::uint32_t> take_refs() { return std::move(refs_); }
+
+  std::optional<Cells> try_split(const Cell& cell) {
+    check_loop();
+    const Plane plane = cheapest_plane(cell);
+    if (plane.cost >= static_cast<double>(config_.intersect_cost) * cell.count) return {};
+    choose_sides(cell, plane);
+    Cells cells{plane.axis, plane.position, cell, cell};
+    Cell &below = cells.below, &above = cells.above;
+    below.box.hi[plane.axis] = above.box.lo[plane.axis] = plane.position;
+    below.count = plane.below_count;
+    above.count = plane.above_count;
+    below.depth = above.depth = cell.depth + 1;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      below.begin[axis] = axis == plane.axis
+                              ? stacks_[axis].split_at(plane.position, cell.begin[axis], sides_)
+                              : stacks_[axis].split_across(cell.begin[axis], sides_);
+    // Each side may copy references in proportion to its items; what the first leaves over is the
+    // second one's.
+    const std::uint64_t both = std::uint64_t{below.count} + above.count;
+    below.max_refs = refs_.size() + refs_left(cell) * below.count / both;
+    node_count_ += 2;
+    return cells;
+  }
+
+  KdNode make_inner(const Cell&, const Cells& cells, std::uint32_t children) const {
+    return KdNode::inner(static_cast<std::uint32_t>(cells.axis), cells.position, children);
+  }
+
+  /// Takes the cell's events off the stacks.
+  KdNode make_leaf(const Cell& cell) {
+    const std::size_t first = refs_.size();
+    for (const KdEvent& event : stacks_[0].top(cell.begin[0]))
+      if (event.type() != KdEvent::kEnd) refs_.push_back(ref_base_ + event.item());
+    assert(refs_.size() - first == cell.count);
+    std::sort(refs_.begin() + static_cast<std::ptrdiff_t>(first), refs_.end());
+    for (std::size_t axis = 0; axis < 3; ++axis) stacks_[axis].pop(cell.begin[axis]);
+    return KdNode::leaf(static_cast<std::uint32_t>(first), cell.count);
   }
 
  private:
-  /// Fills node `index` and everything under it. Takes its events off the stacks.
-  void build_node(std::uint32_t index, const Cell& cell) {
-    check_loop();
-    const Split split = cheapest_split(cell);
-    if (split.cost >= static_cast<double>(config_.intersect_cost) * cell.count) {
-      make_leaf(index, cell);
-      return;
-    }
-    choose_sides(cell, split);
-    const auto children = static_cast<std::uint32_t>(tree_.nodes.size());
-    tree_.nodes.resize(children + 2u);
-    tree_.nodes[index] =
-        KdNode::inner(static_cast<std::uint32_t>(split.axis), split.position, children);
+  /// What the leaves of a cell that is to be built next may list; never less than its count.
+  std::uint64_t refs_left(const Cell& cell) const { return cell.max_refs - refs_.size(); }
 
-    Cell below = cell, above = cell;
-    below.box.hi[split.axis] = above.box.lo[split.axis] = split.position;
-    below.count = split.below_count;
-    above.count = split.above_count;
-    below.depth = above.depth = cell.depth + 1;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      KdClamp clamp;
-      if (axis == split.axis) clamp = {split.position, split.position};
-      below.begin[axis] = stacks_[axis].split(cell.begin[axis], sides_, clamp);
-    }
-    // Each side may copy references in proportion to its items; what the first leaves over is the
-    // second one's.
-    const std::uint64_t refs_before = tree_.refs.size();
-    const std::uint64_t both = std::uint64_t{below.count} + above.count;
-    below.max_refs = cell.max_refs * below.count / both;
-    build_node(children, below);
-    above.max_refs = cell.max_refs - (tree_.refs.size() - refs_before);
-    build_node(children + 1, above);
-  }
-
-  void make_leaf(std::uint32_t index, const Cell& cell) {
-    const std::size_t first = tree_.refs.size();
-    for (const KdEvent& event : stacks_[0].top(cell.begin[0]))
-      if (event.type() != KdEvent::kEnd) tree_.refs.push_back(ref_base_ + event.item());
-    assert(tree_.refs.size() - first == cell.count);
-    std::sort(tree_.refs.begin() + static_cast<std::ptrdiff_t>(first), tree_.refs.end());
-    tree_.nodes[index] = KdNode::leaf(static_cast<std::uint32_t>(first), cell.count);
-    for (std::size_t axis = 0; axis < 3; ++axis) stacks_[axis].pop(cell.begin[axis]);
-  }
-
-  /// The plane of least cost strictly inside the cell; cost is infinite where there is none.
-  Split cheapest_split(const Cell& cell) const {
-    Split best;
+  /// The plane of smallest cost strictly inside the cell; cost is infinite where there is none.
+  Plane cheapest_plane(const Cell& cell) const {
+    Plane best;
     if (cell.count == 0 || cell.depth >= max_depth_) return best;
-    if (tree_.nodes.size() + 2 > kMaxNodes) return best;
+    if (node_count_ + 2 > kMaxNodes) return best;
     for (std::size_t axis = 0; axis < 3; ++axis) sweep(cell, axis, best);
     return best;
   }
 
   /// Moves a plane along the axis, counting what starts and ends on the way.
-  void sweep(const Cell& cell, std::size_t axis, Split& best) const {
+  void sweep(const Cell& cell, std::size_t axis, Plane& best) const {
     const std::span<const KdEvent> events = stacks_[axis].top(cell.begin[axis]);
     const SliceOdds odds(config_.area, cell.box, axis);
     const float lo = cell.box.lo[axis], hi = cell.box.hi[axis];
+    const std::uint64_t refs_left = this->refs_left(cell);
     std::uint32_t below = 0, above = cell.count;
     for (std::size_t i = 0; i < events.size();) {
       const float position = events[i].position;
@@ -161,8 +166,7 @@ class KdTreeBuilder {
       for (; i < events.size() && events[i].position == position; ++i) ++here[events[i].type()];
       const std::uint32_t planar = here[KdEvent::kPlanar];
       above -= planar + here[KdEvent::kEnd];
-      if (lo < position && position < hi &&
-          std::uint64_t{below} + above + planar <= cell.max_refs) {
+      if (lo < position && position < hi && std::uint64_t{below} + above + planar <= refs_left) {
         const double p_below = odds.below(position), p_above = odds.above(position);
         consider({split_cost(p_below, below + planar, p_above, above), axis, position, kBelow,
                   below + planar, above},
@@ -185,34 +189,34 @@ class KdTreeBuilder {
     return below == 0 || above == 0 ? cost * config_.empty_bonus : cost;
   }
 
-  static void consider(const Split& candidate, Split& best) {
+  static void consider(const Plane& candidate, Plane& best) {
     if (candidate.cost < best.cost) best = candidate;
   }
 
   /// Sets `sides_` for every item of the cell. An item's start comes before its end in the list.
-  void choose_sides(const Cell& cell, const Split& split) {
-    for (const KdEvent& event : stacks_[split.axis].top(cell.begin[split.axis])) {
+  void choose_sides(const Cell& cell, const Plane& plane) {
+    for (const KdEvent& event : stacks_[plane.axis].top(cell.begin[plane.axis])) {
       KdSides& side = sides_[event.item()];
       if (event.type() == KdEvent::kStart)
-        side = event.position >= split.position ? kAbove : kBoth;
-      else if (event.position < split.position)
+        side = event.position >= plane.position ? kAbove : kBoth;
+      else if (event.position < plane.position)
         side = kBelow;
       else if (event.type() == KdEvent::kPlanar)
-        side = event.position > split.position ? kAbove : split.planar_side;
-      else if (event.position == split.position)
+        side = event.position > plane.position ? kAbove : plane.planar_side;
+      else if (event.position == plane.position)
         side = kBelow;
     }
   }
 
   KdBuildConfig config_;
-  std::uint32_t ref_base_ = 0;
-  std::uint32_t max_depth_ = 0;
+  std::uint32_t ref_base_, max_depth_;
   std::array<KdEventStack, 3> stacks_;
   std::vector<KdSides> sides_;
-  KdTree tree_;
+  std::vector<std::uint32_t> refs_;
+  std::size_t node_count_ = 1;
 };
 
-/// Cost of the subtree at `index` for a ray that meets `cell`.
+/// Cost of the subtree at `index` for a ray that hits `cell`.
 double expected_cost(const KdTreeView& tree, const KdBuildConfig& config, std::uint32_t index,
                      const Aabb& cell) {
   const KdNode& node = tree.nodes[index];
@@ -243,7 +247,14 @@ KdTree build_kd_tree(std::span<const Aabb> boxes, std::uint32_t ref_base,
     ++count;
   }
   assert(count == 0 || (is_finite(bounds.lo) && is_finite(bounds.hi)));
-  return KdTreeBuilder(boxes, ref_base, config).build(bounds, count);
+  KdSplitter splitter(boxes, ref_base, config, depth_limit(config.max_depth, count));
+  KdTree tree;
+  tree.bounds = bounds;
+  tree.nodes =
+      build_top_down<KdNode>(splitter, Cell{bounds, {}, count, 0, kMaxRefsPerItem * count}, 1);
+  tree.refs = splitter.take_refs();
+  assert(validate(tree.view(), boxes, ref_base).empty());
+  return tree;
 }
 
 double sah_cost(const KdTreeView& tree, const KdBuildConfig& config) {

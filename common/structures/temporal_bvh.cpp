@@ -1,33 +1,25 @@
-#include "common/structures/temporal_bvh.h"
-
+// build_temporal_bvh(): a node's cost is summed over the poses, each relative to its root's area.
+// Items are told apart by their centroids in one of a few poses, along one axis, in bins.
 #include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <optional>
 #include <utility>
 #include <vector>
 
 #include "common/base/parallel.h"
+#include "common/structures/bvh.h"
+#include "common/structures/top_down.h"
 
 namespace mdk {
 namespace {
 
-constexpr std::uint32_t kMostBins = 64;
-constexpr std::uint32_t kMostSplitPoses = 3;  ///< whose centroids splits are sought among
+constexpr std::uint32_t kMaxBins = 64;
+constexpr std::uint32_t kMaxSplitPoses = 3;  ///< whose centroids splits are sought among
 /// From here on nodes are halved: 2^27 items then end above kMaxBvhDepth.
-constexpr std::uint32_t kDeepestSplit = kMaxBvhDepth - 30;
-
-double area(const Aabb& box) {
-  if (box.empty()) return 0;
-  const Vec3d e = to_double(box.hi) - to_double(box.lo);
-  return e.x * e.y + e.y * e.z + e.z * e.x;
-}
-
-/// Halved before they are added, so that the sum stays in the range of float.
-float centroid(const Aabb& box, std::size_t axis) {
-  return box.lo[axis] * 0.5f + box.hi[axis] * 0.5f;
-}
+constexpr std::uint32_t kMaxSplitDepth = kMaxBvhDepth - 30;
 
 /// A way to tell items apart: by their centroids in one pose, along one axis, cut into bins.
 struct Ruler {
@@ -42,45 +34,75 @@ struct Ruler {
   }
 };
 
-struct Split {
+struct Plane {
   double cost = std::numeric_limits<double>::infinity();
   Ruler ruler;
-  std::uint32_t plane = 0;  ///< items in bins below it go to the first child
+  std::uint32_t bin = 0;  ///< items in bins below it go to the first child
 };
 
-struct Range {
+/// A run of items that becomes a subtree.
+struct Run {
   std::uint32_t begin, end, depth;
+  Aabb box;       ///< in the first pose
+  double chance;  ///< that a ray that hits the root hits it, summed over the poses
 
   std::uint32_t count() const { return end - begin; }
 };
 
-class TemporalBuilder {
+struct Halves {
+  Run below, above;
+};
+
+class TemporalSplitter {
  public:
-  TemporalBuilder(std::span<const Aabb> boxes, std::uint32_t poses, const BvhBuildConfig& config)
+  using Part = Run;
+  using Split = Halves;
+
+  TemporalSplitter(std::span<const Aabb> boxes, std::uint32_t poses, const BvhBuildConfig& config)
       : boxes_(boxes),
         poses_(poses),
         count_(static_cast<std::uint32_t>(boxes.size() / poses)),
+        bins_(std::min(static_cast<std::uint32_t>(config.bins), kMaxBins)),
         config_(config),
         items_(count_),
-        pose_weights_(poses) {
+        bin_boxes_(std::size_t{bins_} * poses),
+        bin_counts_(bins_),
+        below_(bins_) {
     std::iota(items_.begin(), items_.end(), 0u);
-    bins_ = std::min(static_cast<std::uint32_t>(config.bins), kMostBins);
-    bin_boxes_.resize(std::size_t{bins_} * poses_);
-    bin_counts_.resize(bins_);
-    below_.resize(bins_);
+    refs_.reserve(count_);
+    for (std::uint32_t p = 0; p < poses_; ++p) {
+      Aabb root;
+      for (const Aabb& box : pose(p)) root.extend(box);
+      pose_weights_.push_back(half_area(root) > 0 ? 1 / half_area(root) : 0);
+    }
   }
 
-  Bvh build() {
-    if (count_ == 0) return {};
-    std::vector<Aabb> root(poses_);
-    for (std::uint32_t p = 0; p < poses_; ++p) {
-      for (const Aabb& box : pose(p)) root[p].extend(box);
-      pose_weights_[p] = area(root[p]) > 0 ? 1 / area(root[p]) : 0;
+  Run whole() const { return make_run(0, count_, 0); }
+  std::vector<std::uint32_t> take_refs() { return std::move(refs_); }
+
+  std::optional<Halves> try_split(const Run& run) {
+    check_loop();
+    if (run.count() == 1) return {};
+    const Plane best = cheapest_plane(run);
+    const bool is_found = std::isfinite(best.cost);
+    if (run.count() <= config_.max_leaf) {
+      const double leaf_cost = config_.intersect_cost * run.count() * run.chance;
+      if (!is_found || config_.traversal_cost * run.chance + best.cost >= leaf_cost) return {};
     }
-    bvh_.refs.reserve(count_);
-    bvh_.nodes.resize(1);
-    build_node(0, {0, count_, 0});
-    return std::move(bvh_);
+    const std::uint32_t middle = is_found ? part(run, best) : halve(run);
+    return Halves{make_run(run.begin, middle, run.depth + 1),
+                  make_run(middle, run.end, run.depth + 1)};
+  }
+
+  BvhNode make_inner(const Run& run, const Halves&, std::uint32_t children) const {
+    return BvhNode::inner(run.box, children);
+  }
+
+  BvhNode make_leaf(const Run& run) {
+    const auto first = static_cast<std::uint32_t>(refs_.size());
+    refs_.insert(refs_.end(), items_.begin() + run.begin, items_.begin() + run.end);
+    std::sort(refs_.begin() + first, refs_.end());
+    return BvhNode::leaf(run.box, first, run.count());
   }
 
  private:
@@ -88,92 +110,66 @@ class TemporalBuilder {
     return boxes_.subspan(std::size_t{p} * count_, count_);
   }
 
-  /// Chance that a ray that meets the root meets these boxes, one per pose: summed over the poses.
-  double measure(const Aabb* boxes) const {
+  /// Chance that a ray that hits the root hits these boxes, one per pose: summed over the poses.
+  double chance(const std::vector<Aabb>& boxes) const {
     double sum = 0;
-    for (std::uint32_t p = 0; p < poses_; ++p) sum += pose_weights_[p] * area(boxes[p]);
+    for (std::uint32_t p = 0; p < poses_; ++p) sum += pose_weights_[p] * half_area(boxes[p]);
     return sum;
   }
 
-  void build_node(std::uint32_t index, const Range& range) {
-    check_loop();
-    std::vector<Aabb> node(poses_);
+  Run make_run(std::uint32_t begin, std::uint32_t end, std::uint32_t depth) const {
+    std::vector<Aabb> boxes(poses_);
     for (std::uint32_t p = 0; p < poses_; ++p)
-      for (std::uint32_t i = range.begin; i < range.end; ++i) node[p].extend(pose(p)[items_[i]]);
-    bvh_.nodes[index].set_box(node[0]);
-    const std::uint32_t middle = divide(range, measure(node.data()));
-    if (middle == range.begin) {
-      make_leaf(index, range);
-      return;
-    }
-    const auto children = static_cast<std::uint32_t>(bvh_.nodes.size());
-    bvh_.nodes[index].first = children;
-    bvh_.nodes.resize(children + 2u);
-    build_node(children, {range.begin, middle, range.depth + 1});
-    build_node(children + 1, {middle, range.end, range.depth + 1});
+      for (std::uint32_t i = begin; i < end; ++i) boxes[p].extend(pose(p)[items_[i]]);
+    return {begin, end, depth, boxes[0], chance(boxes)};
   }
 
-  void make_leaf(std::uint32_t index, const Range& range) {
-    const auto first = static_cast<std::uint32_t>(bvh_.refs.size());
-    bvh_.refs.insert(bvh_.refs.end(), items_.begin() + range.begin, items_.begin() + range.end);
-    std::sort(bvh_.refs.begin() + first, bvh_.refs.end());
-    bvh_.nodes[index].first = first;
-    bvh_.nodes[index].count = range.count();
-  }
-
-  /// Orders the items so that those of the first child come first. Returns where the second child's
-  /// begin, or range.begin for a leaf.
-  std::uint32_t divide(const Range& range, double whole) {
-    const std::uint32_t count = range.count();
-    if (count == 1) return range.begin;
-    Split best;
-    if (range.depth < kDeepestSplit)
-      for (std::uint32_t s = 0; s < std::min(poses_, kMostSplitPoses); ++s)
-        for (std::size_t axis = 0; axis < 3; ++axis)
-          try_axis(range, s * poses_ / std::min(poses_, kMostSplitPoses), axis, best);
-
-    const bool is_found = std::isfinite(best.cost);
-    if (count <= config_.max_leaf) {
-      const double leaf_cost = config_.intersect_cost * count * whole;
-      if (!is_found || config_.traversal_cost * whole + best.cost >= leaf_cost) return range.begin;
-    }
-    if (!is_found) return halve(range);
+  /// Puts the items of the first child first. Returns where those of the second one begin.
+  std::uint32_t part(const Run& run, const Plane& plane) {
     const auto middle =
-        std::partition(items_.begin() + range.begin, items_.begin() + range.end,
-                       [&](std::uint32_t item) { return best.ruler.bin(item) < best.plane; });
+        std::partition(items_.begin() + run.begin, items_.begin() + run.end,
+                       [&](std::uint32_t item) { return plane.ruler.bin(item) < plane.bin; });
     return static_cast<std::uint32_t>(middle - items_.begin());
   }
 
   /// Halves by number: only where centroids tell nothing or the depth runs out.
-  std::uint32_t halve(const Range& range) {
-    const std::uint32_t middle = range.begin + range.count() / 2;
-    std::nth_element(items_.begin() + range.begin, items_.begin() + middle,
-                     items_.begin() + range.end);
+  std::uint32_t halve(const Run& run) {
+    const std::uint32_t middle = run.begin + run.count() / 2;
+    std::nth_element(items_.begin() + run.begin, items_.begin() + middle, items_.begin() + run.end);
     return middle;
   }
 
-  void try_axis(const Range& range, std::uint32_t p, std::size_t axis, Split& best) {
+  Plane cheapest_plane(const Run& run) {
+    Plane best;
+    if (run.depth >= kMaxSplitDepth) return best;
+    const std::uint32_t tried = std::min(poses_, kMaxSplitPoses);
+    for (std::uint32_t s = 0; s < tried; ++s)
+      for (std::size_t axis = 0; axis < 3; ++axis) try_axis(run, s * poses_ / tried, axis, best);
+    return best;
+  }
+
+  void try_axis(const Run& run, std::uint32_t p, std::size_t axis, Plane& best) {
     Ruler ruler;
     ruler.boxes = pose(p).data();
     ruler.axis = axis;
-    ruler.bins = std::min(bins_, 2 * range.count());
+    ruler.bins = std::min(bins_, 2 * run.count());
     float hi = -std::numeric_limits<float>::infinity();
     ruler.lo = -hi;
-    for (std::uint32_t i = range.begin; i < range.end; ++i) {
+    for (std::uint32_t i = run.begin; i < run.end; ++i) {
       const float c = centroid(ruler.boxes[items_[i]], axis);
       ruler.lo = std::min(ruler.lo, c);
       hi = std::max(hi, c);
     }
     ruler.scale = static_cast<float>(ruler.bins) / (hi - ruler.lo);
     if (!std::isfinite(ruler.scale) || ruler.scale <= 0) return;  // a point, or too short or long
-    fill_bins(range, ruler);
-    sweep(range.count(), ruler, best);
+    fill_bins(run, ruler);
+    sweep(run.count(), ruler, best);
   }
 
-  void fill_bins(const Range& range, const Ruler& ruler) {
+  void fill_bins(const Run& run, const Ruler& ruler) {
     std::fill_n(bin_boxes_.begin(), std::size_t{ruler.bins} * poses_, Aabb{});
     std::fill_n(bin_counts_.begin(), ruler.bins, 0u);
-    for (std::uint32_t i = range.begin; i < range.end; ++i) {
+    for (std::uint32_t i = run.begin; i < run.end; ++i) {
       const std::uint32_t item = items_[i], bin = ruler.bin(item);
       ++bin_counts_[bin];
       for (std::uint32_t p = 0; p < poses_; ++p)
@@ -181,9 +177,9 @@ class TemporalBuilder {
     }
   }
 
-  void sweep(std::uint32_t count, const Ruler& ruler, Split& best) {
+  void sweep(std::uint32_t count, const Ruler& ruler, Plane& best) {
     const auto cost = [&](const std::vector<Aabb>& side, std::uint32_t items) {
-      return config_.intersect_cost * measure(side.data()) * items;
+      return config_.intersect_cost * chance(side) * items;
     };
     const auto add_bin = [&](std::vector<Aabb>& side, std::uint32_t bin) {
       for (std::uint32_t p = 0; p < poses_; ++p)
@@ -191,30 +187,29 @@ class TemporalBuilder {
     };
     std::vector<Aabb> side(poses_);
     std::uint32_t items = 0;
-    for (std::uint32_t plane = 1; plane < ruler.bins; ++plane) {
-      add_bin(side, plane - 1);
-      items += bin_counts_[plane - 1];
-      below_[plane] = cost(side, items);
+    for (std::uint32_t bin = 1; bin < ruler.bins; ++bin) {
+      add_bin(side, bin - 1);
+      items += bin_counts_[bin - 1];
+      below_[bin] = cost(side, items);
     }
     side.assign(poses_, Aabb{});
     items = 0;
-    for (std::uint32_t plane = ruler.bins - 1; plane > 0; --plane) {
-      add_bin(side, plane);
-      items += bin_counts_[plane];
-      const double sum = below_[plane] + cost(side, items);
-      if (items != 0 && items != count && sum < best.cost) best = {sum, ruler, plane};
+    for (std::uint32_t bin = ruler.bins - 1; bin > 0; --bin) {
+      add_bin(side, bin);
+      items += bin_counts_[bin];
+      const double sum = below_[bin] + cost(side, items);
+      if (items != 0 && items != count && sum < best.cost) best = {sum, ruler, bin};
     }
   }
 
   std::span<const Aabb> boxes_;
-  std::uint32_t poses_, count_, bins_ = 0;
+  std::uint32_t poses_, count_, bins_;
   BvhBuildConfig config_;
-  std::vector<std::uint32_t> items_;
+  std::vector<std::uint32_t> items_, refs_;
   std::vector<double> pose_weights_;
   std::vector<Aabb> bin_boxes_;  ///< by bin, then pose
   std::vector<std::uint32_t> bin_counts_;
-  std::vector<double> below_;  ///< cost of what is below a plane
-  Bvh bvh_;
+  std::vector<double> below_;  ///< cost of what is below a bin
 };
 
 }  // namespace
@@ -222,7 +217,13 @@ class TemporalBuilder {
 Bvh build_temporal_bvh(std::span<const Aabb> boxes, std::uint32_t poses,
                        const BvhBuildConfig& config) {
   assert(poses > 0 && boxes.size() % poses == 0 && config.bins >= 2);
-  return TemporalBuilder(boxes, poses, config).build();
+  Bvh bvh;
+  if (boxes.empty()) return bvh;
+  TemporalSplitter splitter(boxes, poses, config);
+  bvh.nodes = build_top_down<BvhNode>(splitter, splitter.whole(), 1);
+  bvh.refs = splitter.take_refs();
+  assert(validate(bvh, boxes.first(boxes.size() / poses), config.max_leaf).empty());
+  return bvh;
 }
 
 }  // namespace mdk

@@ -1,10 +1,15 @@
+// Making wide hierarchies: a binary one collapsed, or boxes halved into parts until a node has
+// eight. Both are filled by one descent; what is put into a node is what differs.
 #include "common/structures/wide_bvh.h"
 
+#include <algorithm>
 #include <array>
 #include <cassert>
 #include <utility>
 
 #include "common/base/parallel.h"
+#include "common/structures/link_check.h"
+#include "common/structures/top_down.h"
 
 namespace mdk {
 namespace {
@@ -15,12 +20,43 @@ constexpr std::size_t kNodesPerChunk = 512;
 constexpr float kNodeCost = 1.0f;
 constexpr float kLeafCost = 1.0f;
 
-float half_area(const BvhNode& node) {
+/// Up to eight parts of what is under a node.
+template <class Part>
+struct Parts {
+  std::array<Part, kBvhWidth> part;
+  std::uint32_t count = 0;
+
+  void push(const Part& p) { part[count++] = p; }
+  std::span<Part> all() { return {part.data(), count}; }
+};
+
+/// Fills a node and what is under it, depth first, and returns its index. Of `source`:
+/// divide(part) gives the parts of a node, box_of(part) the box of one, is_leaf(part) whether it is
+/// a leaf, whose number add_leaf(part) then gives.
+template <class Source, class Part>
+std::uint32_t fill_node(std::vector<WideBvhNode>& nodes, Source& source, const Part& whole) {
+  const auto index = static_cast<std::uint32_t>(nodes.size());
+  nodes.emplace_back();
+  Parts<Part> parts = source.divide(whole);
+  for (std::uint32_t c = 0; c < parts.count; ++c) {
+    const Part& part = parts.part[c];
+    const WideBvhChild child = source.is_leaf(part)
+                                   ? WideBvhChild::leaf(source.add_leaf(part))
+                                   : WideBvhChild::inner(fill_node(nodes, source, part));
+    nodes[index].child[c] = child;
+    nodes[index].set_box(c, source.box_of(part));
+  }
+  nodes[index].count = parts.count;
+  nodes[index].pad();
+  return index;
+}
+
+float cost_area(const BvhNode& node) {
   const float x = node.hi.x - node.lo.x, y = node.hi.y - node.lo.y, z = node.hi.z - node.lo.z;
   return x * y + (x + y) * z;
 }
 
-/// Bottom up, the least cost of standing for a binary node by at most i = 1...8 wide ones:
+/// Bottom up, the smallest cost of standing for a binary node by at most i = 1...8 wide ones:
 ///
 ///     cost(n, 1) = a wide node over the best eight, or a leaf
 ///     cost(n, i) = the best way to share i between n's two children, or cost(n, i - 1)
@@ -33,8 +69,30 @@ class Collapser {
     for (std::size_t i = binary_.nodes.size(); i-- > 0;) make_plan(i);
     wide_.nodes.reserve(binary_.nodes.size() / kBvhWidth + 1);
     wide_.items.reserve((binary_.nodes.size() + 1) / 2 * kLeafItems);
-    collapse_node(0);
+    fill_node(wide_.nodes, *this, 0u);
     return std::move(wide_);
+  }
+
+  // For fill_node(): parts are nodes of the binary tree.
+  Parts<std::uint32_t> divide(std::uint32_t root) const {
+    Parts<std::uint32_t> children;
+    if (binary_.nodes[root].is_leaf()) {
+      children.push(root);
+    } else {
+      share(root, plans_[root].own_left, kBvhWidth, children);
+    }
+    return children;
+  }
+  bool is_leaf(std::uint32_t node) const { return binary_.nodes[node].is_leaf(); }
+  Aabb box_of(std::uint32_t node) const { return binary_.nodes[node].box(); }
+  std::uint32_t add_leaf(std::uint32_t node) {
+    const BvhNode& leaf = binary_.nodes[node];
+    assert(leaf.count <= kLeafItems);
+    const std::uint32_t number = wide_.leaf_count();
+    const auto first = binary_.refs.begin() + leaf.first;
+    wide_.items.insert(wide_.items.end(), first, first + leaf.count);
+    wide_.items.resize((std::size_t{number} + 1) * kLeafItems, kNoItem);
+    return number;
   }
 
  private:
@@ -45,16 +103,12 @@ class Collapser {
     std::array<std::uint8_t, kBvhWidth + 1> left;  ///< of i in use, how many go to the first child
     std::uint8_t own_left = 0;                     ///< the same for the eight of its own wide node
   };
-  struct Children {
-    std::array<std::uint32_t, kBvhWidth> nodes;  ///< of the binary tree
-    std::uint32_t count = 0;
-  };
 
   void make_plan(std::size_t index) {
     const BvhNode& node = binary_.nodes[index];
     Plan& plan = plans_[index];
     if (node.is_leaf()) {
-      plan.cost.fill(half_area(node) * kLeafCost);
+      plan.cost.fill(cost_area(node) * kLeafCost);
       plan.used.fill(1);
       return;
     }
@@ -70,7 +124,7 @@ class Collapser {
       }
     }
     plan.own_left = plan.left[kBvhWidth];
-    plan.cost[1] = plan.cost[kBvhWidth] + half_area(node) * kNodeCost;
+    plan.cost[1] = plan.cost[kBvhWidth] + cost_area(node) * kNodeCost;
     plan.used[1] = 1;
     for (std::size_t i = 2; i <= kBvhWidth; ++i) {
       const bool fewer_will_do = plan.cost[i - 1] <= plan.cost[i];
@@ -80,50 +134,20 @@ class Collapser {
   }
 
   /// Adds what stands for binary node `index` where there is room for `room`.
-  void choose(std::uint32_t index, std::size_t room, Children& chosen) const {
+  void choose(std::uint32_t index, std::size_t room, Parts<std::uint32_t>& chosen) const {
     const Plan& plan = plans_[index];
     const std::size_t used = plan.used[room];
     if (used == 1) {
-      chosen.nodes[chosen.count++] = index;
+      chosen.push(index);
     } else {
       share(index, plan.left[used], used, chosen);
     }
   }
-  void share(std::uint32_t index, std::size_t left, std::size_t room, Children& chosen) const {
+  void share(std::uint32_t index, std::size_t left, std::size_t room,
+             Parts<std::uint32_t>& chosen) const {
     const std::uint32_t first = binary_.nodes[index].first;
     choose(first, left, chosen);
     choose(first + 1, room - left, chosen);
-  }
-
-  std::uint32_t collapse_node(std::uint32_t root) {
-    const auto index = static_cast<std::uint32_t>(wide_.nodes.size());
-    wide_.nodes.emplace_back();
-    Children children;
-    if (binary_.nodes[root].is_leaf()) {
-      children.nodes[children.count++] = root;
-    } else {
-      share(root, plans_[root].own_left, kBvhWidth, children);
-    }
-    for (std::uint32_t c = 0; c < children.count; ++c) {
-      const BvhNode& from = binary_.nodes[children.nodes[c]];
-      const WideBvhChild child = from.is_leaf()
-                                     ? WideBvhChild::leaf(add_leaf(from))
-                                     : WideBvhChild::inner(collapse_node(children.nodes[c]));
-      wide_.nodes[index].child[c] = child;
-      wide_.nodes[index].set_box(c, from.box());
-    }
-    wide_.nodes[index].count = children.count;
-    wide_.nodes[index].pad();
-    return index;
-  }
-
-  std::uint32_t add_leaf(const BvhNode& leaf) {
-    assert(leaf.count <= kLeafItems);
-    const std::uint32_t number = wide_.leaf_count();
-    const auto first = binary_.refs.begin() + leaf.first;
-    wide_.items.insert(wide_.items.end(), first, first + leaf.count);
-    wide_.items.resize((std::size_t{number} + 1) * kLeafItems, kNoItem);
-    return number;
   }
 
   const Bvh& binary_;
@@ -140,12 +164,104 @@ Aabb box_of_items(std::span<const std::uint32_t, kLeafItems> items, std::span<co
   return box;
 }
 
+/// Runs of a top level's leaves.
+struct LeafRun {
+  std::uint32_t begin, end;
+
+  std::uint32_t count() const { return end - begin; }
+};
+
+/// A node halves its largest part until it has eight; each part of more than one box is a node.
+class MedianSplitter {
+ public:
+  MedianSplitter(std::span<const Aabb> boxes, std::span<std::uint32_t> box_of_leaf)
+      : boxes_(boxes), box_of_leaf_(box_of_leaf) {}
+
+  Parts<LeafRun> divide(const LeafRun& whole) {
+    Parts<LeafRun> parts;
+    parts.push(whole);
+    while (parts.count < kBvhWidth) {
+      LeafRun& largest = *std::ranges::max_element(parts.all(), {}, &LeafRun::count);
+      if (largest.count() <= 1) break;
+      const std::uint32_t middle = halve(largest);
+      parts.push({middle, largest.end});
+      largest.end = middle;
+    }
+    return parts;
+  }
+  bool is_leaf(const LeafRun& run) const { return run.count() == 1; }
+  std::uint32_t add_leaf(const LeafRun& run) const { return run.begin; }
+  Aabb box_of(const LeafRun& run) const {
+    Aabb box;
+    for (const std::uint32_t i : of(run)) box.extend(boxes_[i]);
+    return box;
+  }
+
+ private:
+  std::span<std::uint32_t> of(const LeafRun& run) const {
+    return box_of_leaf_.subspan(run.begin, run.count());
+  }
+
+  std::uint32_t halve(const LeafRun& run) {
+    const auto place_of = [&](std::uint32_t i, std::size_t axis) {
+      return centroid(boxes_[i], axis);
+    };
+    Aabb centroids;
+    for (const std::uint32_t i : of(run))
+      centroids.extend(Vec3f{place_of(i, 0), place_of(i, 1), place_of(i, 2)});
+    part_at_median(of(run), centroids, place_of, std::identity{});
+    return run.begin + run.count() / 2;
+  }
+
+  std::span<const Aabb> boxes_;
+  std::span<std::uint32_t> box_of_leaf_;
+};
+
+/// The first fault of nodes over `leaf_count` leaves; leaf_fault(leaf, box) tells what is wrong
+/// with a leaf that has this box, if anything.
+template <class LeafFault>
+std::string find_fault(std::span<const WideBvhNode> all, std::size_t leaf_count,
+                       const LeafFault& leaf_fault) {
+  LinkCheck nodes("node", all.size(), kMaxBvhDepth), leaves("leaf", leaf_count);
+  for (std::size_t i = 0; i < all.size(); ++i)
+    if (all[i].count < 1 || all[i].count > kBvhWidth)
+      return nodes.name(i) + ": " + std::to_string(all[i].count) + " children";
+  if (!all.empty()) nodes.reach(0);
+  const auto fault_of = [&](std::size_t i) -> std::string {
+    const WideBvhNode& node = all[i];
+    if (!nodes.is_reached(i)) return "no node before it links to it";
+    for (std::uint32_t c = 0; c < node.count; ++c) {
+      const std::uint32_t child = node.child[c].index();
+      std::string fault;
+      if (node.child[c].is_leaf()) {
+        fault = leaves.reach(child);
+        if (fault.empty()) fault = leaf_fault(child, node.box(c));
+      } else {
+        fault = nodes.reach(child, nodes.depth(i) + 1);
+        if (fault.empty() && node.box(c) != all[child].box())
+          fault = "it has another box for " + nodes.name(child);
+      }
+      if (!fault.empty()) return fault;
+    }
+    for (std::uint32_t c = node.count; c < kBvhWidth; ++c)
+      if (node.box(c) != node.box(0) || node.child[c].index() != node.child[0].index())
+        return "column " + std::to_string(c) + " does not repeat the first one";
+    return "";
+  };
+  for (std::size_t i = 0; i < all.size(); ++i)
+    if (const std::string fault = fault_of(i); !fault.empty()) return nodes.name(i) + ": " + fault;
+  return leaves.find_missing();
+}
+
 }  // namespace
 
 WideBvh collapse(const Bvh& binary) { return Collapser(binary).run(); }
 
 WideBvh build_wide_bvh(std::span<const Aabb> boxes, int bins) {
-  return collapse(build_bvh(boxes, {.bins = bins, .max_leaf = kLeafItems, .block = kLeafItems}));
+  WideBvh bvh =
+      collapse(build_bvh(boxes, {.bins = bins, .max_leaf = kLeafItems, .block = kLeafItems}));
+  assert(validate(bvh, boxes).empty());
+  return bvh;
 }
 
 void refit_wide_bvh(WideBvh& bvh, std::span<const Aabb> boxes) {
@@ -169,16 +285,51 @@ void refit_wide_bvh(WideBvh& bvh, std::span<const Aabb> boxes) {
 
 double sah_cost(const WideBvh& bvh) {
   if (bvh.nodes.empty()) return 0;
-  const auto half_area = [](const Aabb& box) {
-    const Vec3d e = to_double(box.hi) - to_double(box.lo);
-    return e.x * e.y + e.y * e.z + e.z * e.x;
-  };
   const double root = half_area(bvh.nodes[0].box());
   double sum = 1;
   for (const WideBvhNode& node : bvh.nodes)
     for (std::uint32_t c = 0; c < node.count; ++c)
       sum += root > 0 ? half_area(node.box(c)) / root : 1;
   return sum;
+}
+
+std::string validate(const WideBvh& bvh, std::span<const Aabb> boxes) {
+  LinkCheck items("item", boxes.size());
+  const auto leaf_fault = [&](std::uint32_t number, const Aabb& box) -> std::string {
+    const auto leaf = bvh.leaf(number);
+    const auto end = std::ranges::find(leaf, kNoItem);
+    for (auto item = leaf.begin(); item != end; ++item)
+      if (std::string fault = items.reach(*item); !fault.empty()) return fault;
+    if (std::find_if(end, leaf.end(), [](std::uint32_t i) { return i != kNoItem; }) != leaf.end())
+      return "an item behind an unused place";
+    return box == box_of_items(leaf, boxes) ? "" : "a leaf's box is not that of its items";
+  };
+  const std::string fault = find_fault(bvh.nodes, bvh.leaf_count(), leaf_fault);
+  return fault.empty() ? items.find_missing() : fault;
+}
+
+void build_top_level(std::span<const Aabb> boxes, TopLevel& top) {
+  top.nodes.clear();
+  top.box_of_leaf.clear();
+  for (std::uint32_t i = 0; i < boxes.size(); ++i)
+    if (!boxes[i].empty()) top.box_of_leaf.push_back(i);
+  if (top.box_of_leaf.empty()) return;
+  MedianSplitter splitter(boxes, top.box_of_leaf);
+  fill_node(top.nodes, splitter, LeafRun{0, static_cast<std::uint32_t>(top.box_of_leaf.size())});
+  assert(validate(top, boxes).empty());
+}
+
+std::string validate(const TopLevel& top, std::span<const Aabb> boxes) {
+  LinkCheck items("box", boxes.size());
+  for (std::size_t i = 0; i < boxes.size(); ++i)
+    if (boxes[i].empty()) items.reach(i);  // needs no leaf
+  const auto leaf_fault = [&](std::uint32_t number, const Aabb& box) -> std::string {
+    const std::uint32_t item = top.box_of_leaf[number];
+    if (std::string fault = items.reach(item); !fault.empty()) return fault;
+    return box == boxes[item] ? "" : "it has another box for " + items.name(item);
+  };
+  const std::string fault = find_fault(top.nodes, top.box_of_leaf.size(), leaf_fault);
+  return fault.empty() ? items.find_missing() : fault;
 }
 
 }  // namespace mdk

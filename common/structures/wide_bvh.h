@@ -1,10 +1,12 @@
-// WideBvh: a hierarchy whose nodes hold the boxes of up to eight children side by side, so that a
-// tile tests them all at once, and whose leaves hold up to sixteen items, as many as are tested
-// together. Made by collapsing a binary Bvh; follows moving items by refitting.
+// Hierarchies whose nodes hold the boxes of up to eight children side by side, so that a tile tests
+// them all at once. WideBvh: leaves hold up to sixteen items, as many as are tested together; made
+// by collapsing a binary Bvh; follows moving items by refitting. TopLevel: one box a leaf, made
+// anew for every frame.
 #pragma once
 
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "common/math/aabb.h"
@@ -92,8 +94,32 @@ WideBvh build_wide_bvh(std::span<const Aabb> boxes, int bins);
 /// New boxes for the same items, bottom up. `boxes` has one per item. Cost: O(N); runs in parallel.
 void refit_wide_bvh(WideBvh& bvh, std::span<const Aabb> boxes);
 
-/// Expected boxes and leaves met by a ray that meets the root's box (SAH). A root without area
-/// counts as met whole. Cost: O(nodes).
+/// Expected boxes and leaves hit by a ray that hits the root's box (SAH). A root without area
+/// counts as hit whole. Cost: O(nodes).
 double sah_cost(const WideBvh& bvh);
+
+/// The first fault found in a hierarchy over `boxes`, in words; empty where there is none. Sound:
+/// every node and leaf is reached once, nodes from one before them and none deeper than
+/// kMaxBvhDepth; every item is in one leaf; each box is the union of what is under it; columns and
+/// places in leaves that are not used come last and are filled as they must be. Cost: O(N).
+std::string validate(const WideBvh& bvh, std::span<const Aabb> boxes);
+
+/// A small hierarchy over boxes, such as those of clusters in the world (Lo09 §4.3). One box a
+/// leaf: leaf i holds box `box_of_leaf[i]`. Nodes as in a WideBvh. Empty boxes are left out.
+struct TopLevel {
+  std::vector<WideBvhNode> nodes;
+  std::vector<std::uint32_t> box_of_leaf;
+
+  std::size_t bytes() const {
+    return nodes.size() * sizeof(WideBvhNode) + box_of_leaf.size() * sizeof(std::uint32_t);
+  }
+};
+
+/// Splits at medians. Keeps the memory `top` has. Boxes must be finite or empty. Cost: O(K log K).
+/// The result depends on the input alone.
+void build_top_level(std::span<const Aabb> boxes, TopLevel& top);
+
+/// As for a WideBvh: every box that is not empty has one leaf.
+std::string validate(const TopLevel& top, std::span<const Aabb> boxes);
 
 }  // namespace mdk

@@ -1,5 +1,6 @@
 #include "common/trace/camera.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <string>

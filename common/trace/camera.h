@@ -1,6 +1,7 @@
-// Camera: a pinhole and the rays it sends through pixel centres.
+// Camera: a pinhole, the rays it sends through pixel centres, and how samples spread around those.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 
 #include "common/math/aabb.h"
@@ -32,6 +33,16 @@ inline constexpr std::uint32_t kMaxImageSide = 16384;
 /// Throws Error (kUsage) where the camera sees nothing: eye and target coincide, numbers that are
 /// not finite, a field of view outside (0, 180). An `up` along the view axis is replaced.
 PinholeRays make_pinhole_rays(const Camera& camera, std::uint32_t width, std::uint32_t height);
+
+/// Point `i` of a sequence that covers the unit square evenly (Roberts 2018); the first one is its
+/// middle.
+struct EvenPoint {
+  double x, y;
+
+  explicit EvenPoint(std::uint32_t i)
+      : x(fraction(0.5 + i * 0.7548776662466927)), y(fraction(0.5 + i * 0.5698402909980532)) {}
+  static double fraction(double a) { return a - std::floor(a); }
+};
 
 /// A camera in front of `bounds` (from +z, slightly above and to the side) so that all of it is in
 /// the picture.

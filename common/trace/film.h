@@ -12,8 +12,9 @@
 
 namespace mdk {
 
-/// Most samples a pixel may have.
-inline constexpr std::uint32_t kMostSamples = 4096;
+/// How many samples a pixel may have.
+inline constexpr std::uint32_t kMaxSamples = 4096;
+inline constexpr std::uint32_t kMostSamples = kMaxSamples;  // to be renamed
 
 class Film {
  public:

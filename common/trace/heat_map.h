@@ -1,4 +1,5 @@
-// HeatMap: amounts as colours, from violet over green to yellow: lighter is more, also in grey.
+// Heat maps: amounts as colours, from violet over green to yellow: lighter is more, also in grey.
+// What they show is counted work, or residuals: the motion that a cluster's map does not explain.
 #pragma once
 
 #include <cstdint>
@@ -24,16 +25,22 @@ struct HeatScale {
 /// number.
 Vec3f heat_color(double share);
 
-/// The least of 1, 2, 5, 10, ... times a power of ten that is not below `value`; 1 where the value
-/// is not above 0.
+/// The smallest of 1, 2, 5, 10, ... times a power of ten that is not below `value`; 1 where the
+/// value is not above 0.
 double round_scale(double value);
+
+/// Per triangle, the largest residual of its corners in the current pose, relative to the rest
+/// pose's diagonal (GFW06 §3.1): the distance, in the cluster's basis, of the corner from where it
+/// is in the rest pose. `out` has one per triangle. Decodes the rest pose. Runs in parallel. Cost:
+/// O(vertices + triangles).
+void triangle_residuals(const PosedMesh& mesh, std::span<float> out);
 
 /// What one sample's heat map shows, by triangle or by tile. Keeps its memory between frames.
 class HeatMap {
  public:
   HeatMap();
 
-  /// Residuals of the present pose (triangle_residuals()), in percent, as indices of palette().
+  /// Residuals of the current pose (triangle_residuals()), in percent, as indices of palette().
   HeatScale color_triangles(const PosedMesh& mesh);
   const std::vector<Vec3f>& palette() const { return palette_; }
   const std::vector<std::uint32_t>& triangle_colors() const { return triangle_colors_; }

@@ -18,15 +18,6 @@ constexpr std::uint32_t kInterleave = 2;
 constexpr std::uint32_t kClasses = kInterleave * kInterleave;
 constexpr std::uint32_t kClassPixels = kTilePixels / kClasses;
 
-/// Evenly spread numbers for i = 0, 1, ... (Roberts 2018).
-struct EvenPoint {
-  double x, y;
-
-  explicit EvenPoint(std::uint32_t i)
-      : x(fraction(0.5 + i * 0.7548776662466927)), y(fraction(0.5 + i * 0.5698402909980532)) {}
-  static double fraction(double a) { return a - std::floor(a); }
-};
-
 /// Pixels of a tile in the order rays are made: class by class, and in each by squares, so that the
 /// sixteen rays of a group start close together.
 template <std::uint32_t Side>

@@ -15,9 +15,10 @@
 
 namespace mdk {
 
-/// Most occlusion rays a sample may have.
-inline constexpr std::uint32_t kMostOcclusionRays = 1024;
+/// How many occlusion rays a sample may have, and has unless it is told otherwise.
+inline constexpr std::uint32_t kMaxOcclusionRays = 1024;
 inline constexpr std::uint32_t kOcclusionRays = 16;
+inline constexpr std::uint32_t kMostOcclusionRays = kMaxOcclusionRays;  // to be renamed
 
 /// One tile to be lit; the arrays have one value per pixel.
 struct LitTile {
@@ -41,7 +42,7 @@ class Lighting {
   /// of the mesh. `technique` must be ready to occlude, and outlive this.
   Lighting(const Technique& technique, const PinholeRays& rays, const Aabb& mesh);
 
-  /// To be called before tiles are lit. `occlusion_rays` per pixel, up to kMostOcclusionRays; 0:
+  /// To be called before tiles are lit. `occlusion_rays` per pixel, up to kMaxOcclusionRays; 0:
   /// nothing hides sky and ground. `sample` numbers the pictures that are averaged, each of which
   /// has directions of its own.
   void choose_directions(std::uint32_t occlusion_rays, std::uint32_t sample);

@@ -3,8 +3,8 @@
 #include <tbb/enumerable_thread_specific.h>
 
 #include <algorithm>
-#include <cmath>
 #include <map>
+#include <numbers>
 #include <string>
 
 #include "common/base/error.h"
@@ -22,26 +22,23 @@ void check_request(const FrameRequest& request) {
   refuse(width < 1 || height < 1 || width > kMaxImageSide || height > kMaxImageSide,
          "an image of " + std::to_string(width) + "x" + std::to_string(height) +
              " pixels cannot be: sides go from 1 to " + std::to_string(kMaxImageSide));
-  refuse(request.samples < 1 || request.samples > kMostSamples,
+  refuse(request.samples < 1 || request.samples > kMaxSamples,
          std::to_string(request.samples) + " samples per pixel cannot be: they go from 1 to " +
-             std::to_string(kMostSamples));
-  refuse(request.occlusion_rays > kMostOcclusionRays,
+             std::to_string(kMaxSamples));
+  refuse(request.occlusion_rays > kMaxOcclusionRays,
          std::to_string(request.occlusion_rays) + " occlusion rays cannot be: they go from 0 to " +
-             std::to_string(kMostOcclusionRays));
+             std::to_string(kMaxOcclusionRays));
   refuse(!request.shutter.empty() && request.shutter.size() != request.samples,
          "a shutter needs a moment for each sample");
 }
 
-/// Sample `i` of every pixel: the centre first, then spread evenly over the pixel (Roberts 2018).
+/// Sample `i` of every pixel: the centre first, then spread evenly over the pixel.
 PinholeRays sample_rays(const FrameRequest& request, std::uint32_t i) {
   PinholeRays rays = make_pinhole_rays(request.camera, request.width, request.height);
   if (i == 0) return rays;
-  const auto offset = [i](double step) {
-    const double place = 0.5 + i * step;
-    return static_cast<float>(place - std::floor(place) - 0.5);
-  };
-  rays.corner =
-      rays.corner + rays.du * offset(0.7548776662466927) + rays.dv * offset(0.5698402909980532);
+  const EvenPoint place(i);
+  rays.corner = rays.corner + rays.du * static_cast<float>(place.x - 0.5) +
+                rays.dv * static_cast<float>(place.y - 0.5);
   return rays;
 }
 
@@ -60,7 +57,7 @@ struct Renderer::State {
   PosedMesh mesh;
   Shader shader;
   std::map<std::string_view, std::unique_ptr<Technique>> techniques;
-  const TechniqueInfo* present = nullptr;
+  const TechniqueInfo* info = nullptr;
   Technique* technique = nullptr;
 
   tbb::enumerable_thread_specific<Worker> workers;
@@ -101,11 +98,11 @@ void Renderer::set_technique(std::string_view id) {
   const TechniqueInfo& row = find_technique(id);
   std::unique_ptr<Technique>& technique = state_->techniques[row.id];
   if (technique == nullptr) technique = row.make(state_->model);
-  state_->present = &row;
+  state_->info = &row;
   state_->technique = technique.get();
 }
 
-std::string_view Renderer::technique_id() const { return state_->present->id; }
+std::string_view Renderer::technique_id() const { return state_->info->id; }
 
 /// Vertices are posed when they are first asked for: that counts as pose, wherever it happened.
 /// Returns the rest, in milliseconds.
@@ -200,5 +197,16 @@ std::span<const TraceCounters> Renderer::tile_work() const { return state_->tile
 const FrameStats& Renderer::stats() const { return state_->stats; }
 std::size_t Renderer::structure_bytes() const { return state_->technique->structure_bytes(); }
 std::string Renderer::technique_note() const { return state_->technique->note(); }
+
+std::vector<KeyInterval> shutter_moments(const Model& model, std::uint32_t clip, double seconds,
+                                         double open, std::uint32_t samples) {
+  std::vector<KeyInterval> moments;
+  moments.reserve(samples);
+  for (std::uint32_t i = 0; i < samples; ++i) {
+    const double place = EvenPoint::fraction(0.5 + i / std::numbers::phi);
+    moments.push_back(locate_time(model, clip, seconds + open * (place - 0.5)));
+  }
+  return moments;
+}
 
 }  // namespace mdk

@@ -1,4 +1,5 @@
-// Renderer: one model, one technique, one frame at a time: pose, update, trace, shade, each timed.
+// Renderer: one model, one technique, one frame at a time: pose, update, trace, shade, each timed;
+// and the moments at which the samples of a frame are taken, for motion blur.
 #pragma once
 
 #include <cstdint>
@@ -24,8 +25,8 @@ struct FrameRequest {
   Camera camera;
   std::uint32_t width = 512, height = 512;  ///< 1 to kMaxImageSide each
   ShadingMode shading = ShadingMode::kDiffuse;
-  std::uint32_t samples = 1;  ///< per pixel, 1 to kMostSamples; 1: through the pixel's centre
-  std::uint32_t occlusion_rays = kOcclusionRays;  ///< per sample of kLit, 0 to kMostOcclusionRays
+  std::uint32_t samples = 1;  ///< per pixel, 1 to kMaxSamples; 1: through the pixel's centre
+  std::uint32_t occlusion_rays = kOcclusionRays;  ///< per sample of kLit, 0 to kMaxOcclusionRays
   std::span<const KeyInterval> shutter = {};      ///< the moment of each sample; empty: all at `at`
   Counting counting = Counting::kOff;             ///< counts cost time: never time a counting frame
   const SkeletonPose* pose = nullptr;             ///< where there is one, it counts instead of `at`
@@ -61,12 +62,18 @@ class Renderer {
   std::span<const TraceCounters> tile_work() const;
   const FrameStats& stats() const;
   std::size_t structure_bytes() const;
-  /// Technique::note() of the present technique.
+  /// Technique::note() of the current technique.
   std::string technique_note() const;
 
  private:
   struct State;
   std::unique_ptr<State> state_;
 };
+
+/// One moment per sample, spread evenly over `open` seconds with `seconds` of the clip in their
+/// middle, which is the first one's; in an order that has nothing to do with where in their pixel
+/// the samples are. Times outside the clip are clamped to it.
+std::vector<KeyInterval> shutter_moments(const Model& model, std::uint32_t clip, double seconds,
+                                         double open, std::uint32_t samples);
 
 }  // namespace mdk

@@ -3,18 +3,16 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <string_view>
-#include <vector>
 
 #include "common/motion/posed_mesh.h"
 #include "common/trace/camera.h"
 #include "common/trace/film.h"
 #include "common/trace/heat_map.h"
 #include "common/trace/hit_buffer.h"
-#include "common/trace/kernels/surface_kernel.h"
 #include "common/trace/lighting.h"
-#include "common/trace/seen_vertices.h"
 
 namespace mdk {
 
@@ -65,37 +63,15 @@ struct ShadingReport {
 class Shader {
  public:
   explicit Shader(const Model& model);
+  ~Shader();
 
   /// One sample of every pixel. Runs in parallel. The same for any number of threads and any
   /// instruction set.
   ShadingReport shade(const ShadingInput& input, ShadingMode mode, Film& film);
 
  private:
-  struct Tile;
-  struct Scratch;
-
-  HeatScale prepare_heat(const ShadingInput& input, ShadingMode mode);
-  ShadedMesh shaded_mesh(ShadingMode mode) const;
-  SurfaceWishes wishes(ShadingMode mode) const;
-  bool is_unlit(std::uint32_t triangle) const;
-  void apply_textures(Tile& tile) const;
-  void show_normals(Tile& tile) const;
-  void show_work(Tile& tile) const;
-  void light_from_eye(ShadingMode mode, float least, Tile& tile) const;
-  void show_tile(ShadingMode mode, Tile& tile) const;
-  std::uint64_t light_from_lamps(const Lighting& lighting, const ShadedMesh& mesh,
-                                 Lighting::Scratch& scratch, Tile& tile) const;
-  std::uint64_t shade_tile(const ShadingInput& input, ShadingMode mode, Tile& tile,
-                           Scratch& scratch) const;
-
-  const Model* model_;
-  std::vector<Vec3f> material_colors_, cluster_colors_;
-  std::vector<std::uint32_t> triangle_cluster_;
-  std::vector<std::uint8_t> is_flat_;            ///< per triangle
-  std::vector<std::uint8_t> is_unlit_material_;  ///< per material
-  bool has_unlit_ = false, has_textures_ = false;
-  SeenVertices vertices_;
-  HeatMap heat_;
+  struct State;
+  std::unique_ptr<State> state_;
 };
 
 }  // namespace mdk

@@ -1,12 +1,15 @@
-// Bvh: built, refitted and costed. Boxes hold what is under them, exactly, and stay within depth
-// and leaf size on every kind of scene.
+// Bvh: built and checked. Boxes hold what is under them, exactly, and stay within
+// depth and leaf size on every kind of scene.
 #include "common/structures/bvh.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
+#include <numeric>
 
+#include "common/structures/wide_bvh.h"
 #include "tests/common/random_boxes.h"
 
 namespace mdk {
@@ -43,41 +46,6 @@ std::vector<std::uint32_t> found_by_force(const std::vector<Aabb>& boxes, const 
   return found;
 }
 
-/// Each node reached once, links forward, each item in one leaf, boxes exact, depth and leaf size
-/// in bounds.
-void expect_sound(const Bvh& bvh, const std::vector<Aabb>& boxes, std::uint32_t max_leaf) {
-  ASSERT_EQ(bvh.refs.size(), boxes.size());
-  std::vector<std::uint32_t> depths(bvh.nodes.size(), 0xffffffffu);
-  std::vector<int> times_listed(boxes.size(), 0);
-  depths[0] = 0;
-  for (std::uint32_t i = 0; i < bvh.nodes.size(); ++i) {
-    const BvhNode& node = bvh.nodes[i];
-    ASSERT_NE(depths[i], 0xffffffffu) << "nothing links to node " << i;
-    ASSERT_LE(depths[i], kMaxBvhDepth);
-    Aabb exact;
-    if (node.is_leaf()) {
-      ASSERT_LE(node.count, max_leaf);
-      ASSERT_LE(node.first + node.count, bvh.refs.size());
-      for (std::uint32_t r = 0; r < node.count; ++r) {
-        const std::uint32_t item = bvh.refs[node.first + r];
-        ASSERT_LT(item, boxes.size());
-        ++times_listed[item];
-        exact.extend(boxes[item]);
-      }
-    } else {
-      ASSERT_GT(node.first, i);
-      ASSERT_LT(node.first + 1, bvh.nodes.size());
-      for (const std::uint32_t child : {node.first, node.first + 1}) {
-        ASSERT_EQ(depths[child], 0xffffffffu) << "two links to node " << child;
-        depths[child] = depths[i] + 1;
-        exact.extend(bvh.nodes[child].box());
-      }
-    }
-    ASSERT_EQ(node.box(), exact) << "node " << i;
-  }
-  EXPECT_THAT(times_listed, ::testing::Each(1));
-}
-
 class BvhOfScene : public ::testing::TestWithParam<BoxScene> {};
 
 TEST_P(BvhOfScene, IsSoundForEveryNumberOfBinsAndLeafSize) {
@@ -87,7 +55,7 @@ TEST_P(BvhOfScene, IsSoundForEveryNumberOfBinsAndLeafSize) {
       BvhBuildConfig config;
       config.bins = bins;
       config.max_leaf = max_leaf;
-      expect_sound(build_bvh(GetParam().boxes, config), GetParam().boxes, max_leaf);
+      EXPECT_EQ(validate(build_bvh(GetParam().boxes, config), GetParam().boxes, max_leaf), "");
     }
 }
 
@@ -101,33 +69,6 @@ TEST_P(BvhOfScene, FindsTheSameBoxesAsBruteForce) {
     ASSERT_EQ(found_by_walking(bvh, boxes, query), found_by_force(boxes, query))
         << "seed " << seed << " query " << k;
   }
-}
-
-TEST_P(BvhOfScene, IsSoundAfterItsBoxesMoveAndRefit) {
-  std::vector<Aabb> boxes = GetParam().boxes;
-  Bvh bvh = build_bvh(boxes);
-  const std::vector<std::uint32_t> refs = bvh.refs;
-  const std::uint64_t seed = 52;
-  Random random(seed);
-  for (Aabb& box : boxes)
-    box = box_at(random.point({{-5, -5, -5}, {5, 5, 5}}), random.point({{0, 0, 0}, {1, 1, 1}}));
-  refit_bvh(bvh, boxes);
-  expect_sound(bvh, boxes, BvhBuildConfig{}.max_leaf);
-  EXPECT_EQ(bvh.refs, refs);
-  for (int k = 0; k < 50; ++k) {
-    const Aabb query = test::random_query(random, bvh.nodes[0].box());
-    ASSERT_EQ(found_by_walking(bvh, boxes, query), found_by_force(boxes, query))
-        << "seed " << seed << " query " << k;
-  }
-}
-
-TEST_P(BvhOfScene, RefitsToItselfWhereNothingMoved) {
-  const Bvh built = build_bvh(GetParam().boxes);
-  Bvh refitted = built;
-  for (BvhNode& node : refitted.nodes) node.set_box({{-9, -9, -9}, {-8, -8, -8}});
-  refit_bvh(refitted, GetParam().boxes);
-  for (std::size_t i = 0; i < built.nodes.size(); ++i)
-    ASSERT_EQ(built.nodes[i].box(), refitted.nodes[i].box());
 }
 
 TEST_P(BvhOfScene, IsTheSameEveryTime) {
@@ -146,11 +87,10 @@ INSTANTIATE_TEST_SUITE_P(AllScenes, BvhOfScene, ::testing::ValuesIn(test::box_sc
                          test::SceneName());
 
 TEST(Bvh, OfNothingHasNoNodes) {
-  Bvh bvh = build_bvh({});
+  const Bvh bvh = build_bvh({});
   EXPECT_TRUE(bvh.nodes.empty());
   EXPECT_TRUE(bvh.refs.empty());
-  EXPECT_EQ(sah_cost(bvh, {}), 0);
-  EXPECT_NO_THROW(refit_bvh(bvh, {}));
+  EXPECT_EQ(validate(bvh, {}, 8), "");
 }
 
 TEST(Bvh, SplitsTwoPilesBetweenThem) {
@@ -194,7 +134,7 @@ TEST(Bvh, HasTheSameShapeForEveryOrderOfItemsThatBinsTellApart) {
 
 TEST(Bvh, SplitsLargeLeavesEvenAtALoss) {
   const std::vector<Aabb> boxes(100, box_at({0, 0, 0}, {1, 1, 1}));
-  expect_sound(build_bvh(boxes), boxes, 8);
+  EXPECT_EQ(validate(build_bvh(boxes), boxes, 8), "");
 }
 
 /// The cheapest split by the book, over all orders by centroid: what enough bins must find.
@@ -258,7 +198,7 @@ TEST(Bvh, IsCheaperWithMoreBins) {
   for (const int bins : {2, 16, 1024}) {
     BvhBuildConfig config;
     config.bins = bins;
-    const double cost = sah_cost(build_bvh(boxes, config), config);
+    const double cost = sah_cost(collapse(build_bvh(boxes, config)));
     EXPECT_LT(cost, last) << bins;
     last = cost;
   }
@@ -278,26 +218,63 @@ TEST(Bvh, StaysBalancedOnALineWhereAreasSayNothing) {
   EXPECT_LE(deepest, 14);
 }
 
-TEST(BvhCost, IsThatOfTheFormulaOnAHandMadeTree) {
+/// Four items in leaves of one: nodes 1 and 2 are inner, 3 to 6 are leaves.
+struct SmallBvh {
+  std::vector<Aabb> boxes;
   Bvh bvh;
-  bvh.nodes.resize(3);
-  bvh.nodes[0] = {{0, 0, 0}, 1, {4, 1, 1}, 0};  // area 18
-  bvh.nodes[1] = {{0, 0, 0}, 0, {1, 1, 1}, 2};  // area 6, two items
-  bvh.nodes[2] = {{2, 0, 0}, 2, {4, 1, 1}, 1};  // area 10, one item
-  bvh.refs = {0, 1, 2};
-  BvhBuildConfig config;
-  config.traversal_cost = 3;
-  config.intersect_cost = 5;
-  EXPECT_NEAR(sah_cost(bvh, config), 3 + 5 * (6 * 2 + 10 * 1) / 18.0, 1e-12);
+
+  SmallBvh() {
+    for (int i = 0; i < 4; ++i) boxes.push_back(box_at({float(i) * 10, 0, 0}, {1, 1, 1}));
+    bvh = build_bvh(boxes, {.traversal_cost = 0, .max_leaf = 1});
+  }
+  std::string fault() const { return validate(bvh, boxes, 1); }
+};
+
+TEST(BvhCheck, FindsEachKindOfFault) {
+  using Break = std::function<void(SmallBvh&)>;
+  const std::pair<const char*, Break> faults[] = {
+      {"node 0: its box is not that of its content", [](SmallBvh& s) { s.bvh.nodes[0].hi.x += 1; }},
+      {"node 3: its box is not that of its content", [](SmallBvh& s) { s.boxes[0].lo.y = -1; }},
+      {"node 0: its box is not that of its content",
+       [](SmallBvh& s) { s.bvh.nodes[2].hi = s.bvh.nodes[1].hi; }},
+      {"node 2: it is not the first to link to node 1",
+       [](SmallBvh& s) { s.bvh.nodes[2].first = 1; }},
+      {"node 2: it is not the first to link to node 2",
+       [](SmallBvh& s) { s.bvh.nodes[2].first = 2; }},
+      {"node 2: it links to node 7, which there is not",
+       [](SmallBvh& s) { s.bvh.nodes[2].first = 6; }},
+      {"node 7: no node before it links to it", [](SmallBvh& s) { s.bvh.nodes.emplace_back(); }},
+      {"node 3: a leaf of 2 items", [](SmallBvh& s) { s.bvh.nodes[3].count = 2; }},
+      {"node 6: a leaf past the end", [](SmallBvh& s) { s.bvh.nodes[6].first = 4; }},
+      {"node 4: it is not the first to link to item 0", [](SmallBvh& s) { s.bvh.refs[1] = 0; }},
+      {"node 4: it links to item 9, which there is not", [](SmallBvh& s) { s.bvh.refs[1] = 9; }},
+      {"nothing links to item 4", [](SmallBvh& s) { s.boxes.push_back(s.boxes[0]); }},
+      {"nothing links to item 0", [](SmallBvh& s) { s.bvh = {}; }},
+  };
+  ASSERT_EQ(SmallBvh().bvh.nodes.size(), 7u);
+  EXPECT_EQ(SmallBvh().fault(), "");
+  for (const auto& [fault, break_it] : faults) {
+    SmallBvh broken;
+    break_it(broken);
+    EXPECT_EQ(broken.fault(), fault);
+  }
 }
 
-TEST(BvhCost, GrowsWhenItemsMoveApart) {
-  std::vector<Aabb> boxes = test::scattered_boxes(500, 1, 0.02f, 55);
-  Bvh bvh = build_bvh(boxes);
-  const double before = sah_cost(bvh, {});
-  std::reverse(boxes.begin(), boxes.end());  // every box goes where another one was
-  refit_bvh(bvh, boxes);
-  EXPECT_GT(sah_cost(bvh, {}), 2 * before);
+TEST(BvhCheck, AllowsTheGreatestDepthAndNoMore) {
+  const std::vector<Aabb> boxes(kMaxBvhDepth + 2, box_at({0, 0, 0}, {1, 1, 1}));
+  Bvh chain;  // each inner node's second child is the next one
+  chain.nodes.push_back(BvhNode::leaf(boxes[0], 0, 1));
+  for (std::uint32_t depth = 0; depth <= kMaxBvhDepth; ++depth) {
+    EXPECT_EQ(validate(chain, std::span(boxes).first(depth + 1), 1).find("deep"),
+              std::string::npos);
+    const auto children = static_cast<std::uint32_t>(chain.nodes.size());
+    chain.nodes.back() = BvhNode::inner(boxes[0], children);
+    chain.nodes.push_back(BvhNode::leaf(boxes[0], depth, 1));
+    chain.nodes.push_back(BvhNode::leaf(boxes[0], depth + 1, 1));
+    chain.refs.resize(depth + 2);
+    std::iota(chain.refs.begin(), chain.refs.end(), 0u);
+  }
+  EXPECT_NE(validate(chain, boxes, 1).find("too deep"), std::string::npos);
 }
 
 }  // namespace

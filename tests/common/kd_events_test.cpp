@@ -65,7 +65,7 @@ TEST(KdEvents, SplitClipsStraddlersAndKeepsOrder) {
       if (sides[i] & kAbove) above[i] = {std::max(lo, plane), hi};
     }
     KdEventStack stack(boxes, 0);
-    const std::size_t top = stack.split(0, sides, {plane, plane});
+    const std::size_t top = stack.split_at(plane, 0, sides);
     EXPECT_EQ(intervals(stack.top(top)), below);
     stack.pop(top);
     EXPECT_EQ(intervals(stack.top(0)), above);
@@ -76,7 +76,7 @@ TEST(KdEvents, SplitAcrossAnotherAxisLeavesPositionsAlone) {
   const std::vector<Aabb> boxes = test::scattered_boxes(3, 1, 0.3f, 63);
   const std::vector<KdSides> sides{kBoth, kAbove, kBelow};
   KdEventStack stack(boxes, 2);
-  const std::size_t top = stack.split(0, sides, {});
+  const std::size_t top = stack.split_across(0, sides);
   const auto whole = [&](std::uint32_t i) { return std::pair(boxes[i].lo.z, boxes[i].hi.z); };
   EXPECT_EQ(intervals(stack.top(top)),
             (std::map<std::uint32_t, std::pair<float, float>>{{0, whole(0)}, {2, whole(2)}}));

@@ -1,12 +1,11 @@
 // The kd-tree builder: boxes are covered by the leaves that list them, splits are the cheapest
 // there are, and size and depth stay within bounds on every kind of scene.
-#include "common/structures/kd_tree_builder.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 
+#include "common/structures/kd_tree.h"
 #include "tests/common/random_boxes.h"
 
 namespace mdk {
@@ -40,7 +39,7 @@ TEST(KdTreeBuilder, LeavesEmptyBoxesOutAndAddsTheBaseToReferences) {
   const std::vector<Aabb> boxes{Aabb{}, box_at({0, 0, 0}, {1, 1, 1}), Aabb{},
                                 box_at({9, 0, 0}, {1, 1, 1})};
   KdTree tree = build_kd_tree(boxes, 1000);
-  EXPECT_TRUE(is_well_formed(tree.view(), 1000, 1004));
+  EXPECT_EQ(validate(tree.view(), boxes, 1000), "");
   std::sort(tree.refs.begin(), tree.refs.end());
   EXPECT_THAT(tree.refs, ElementsAre(1001, 1003));
 }
@@ -147,8 +146,8 @@ TEST(KdTreeBuilder, FollowsTheWeightsOfTheAxes) {
 }
 
 TEST(KdTreeBuilder, CutsOffEmptySpaceOnlyWhereTheBonusMakesItPay) {
-  // The two piles again: the root's split gains much, cutting the gap off gains just less than a
-  // dear step costs.
+  // The two piles again: the root's split gains much, cutting the gap off gains just less than an
+  // expensive step costs.
   std::vector<Aabb> boxes(10, box_at({0, 0, 0}, {1, 1, 1}));
   boxes.resize(20, box_at({9, 0, 0}, {1, 1, 1}));
   KdBuildConfig config;
@@ -179,7 +178,7 @@ TEST(KdTreeBuilder, NeverPassesTheDepthThatTraversalStacksHold) {
   KdBuildConfig config;
   config.max_depth = 100000;
   const KdTree tree = build_kd_tree(boxes, 0, config);
-  EXPECT_TRUE(is_well_formed(tree.view(), 0, 240));
+  EXPECT_EQ(validate(tree.view(), boxes), "");
   EXPECT_EQ(depth_of(tree), kMaxKdDepth);
 }
 
@@ -195,7 +194,7 @@ TEST(KdTreeBuilder, BoundsReferencesHoweverMuchBoxesOverlap) {
   config.max_depth = kMaxKdDepth;
   config.traversal_cost = 1e-6f;  // any gain at all is taken: copies would multiply
   const KdTree tree = build_kd_tree(boxes, 0, config);
-  EXPECT_TRUE(is_well_formed(tree.view(), 0, 3000));
+  EXPECT_EQ(validate(tree.view(), boxes), "");
   EXPECT_LE(tree.refs.size(), 8u * 3000u);
   EXPECT_GT(tree.refs.size(), 4u * 3000u);
 }

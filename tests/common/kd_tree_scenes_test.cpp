@@ -6,7 +6,7 @@
 #include <array>
 #include <functional>
 
-#include "common/structures/kd_tree_builder.h"
+#include "common/structures/kd_tree.h"
 #include "tests/common/random_boxes.h"
 
 namespace mdk {
@@ -15,14 +15,14 @@ namespace {
 using test::BoxScene;
 using test::Random;
 
-/// Calls visit(leaf, cell) for every leaf whose closed cell meets `query`.
+/// Calls visit(leaf) for every leaf whose closed cell overlaps `query`.
 void for_each_leaf(const KdTree& tree, const Aabb& query,
-                   const std::function<void(const KdNode&, const Aabb&)>& visit) {
+                   const std::function<void(const KdNode&)>& visit) {
   const std::function<void(std::uint32_t, const Aabb&)> descend = [&](std::uint32_t index,
                                                                       const Aabb& cell) {
     if (!test::overlap(cell, query)) return;
     const KdNode& node = tree.nodes[index];
-    if (node.is_leaf()) return visit(node, cell);
+    if (node.is_leaf()) return visit(node);
     Aabb below = cell, above = cell;
     below.hi[node.axis()] = above.lo[node.axis()] = node.split();
     descend(node.below(), below);
@@ -43,7 +43,7 @@ bool lists(const KdTree& tree, const KdNode& leaf, std::uint32_t item) {
 std::vector<std::uint32_t> found_by_walking(const KdTree& tree, const std::vector<Aabb>& boxes,
                                             const Aabb& query) {
   std::vector<std::uint32_t> found;
-  for_each_leaf(tree, query, [&](const KdNode& leaf, const Aabb&) {
+  for_each_leaf(tree, query, [&](const KdNode& leaf) {
     for (const std::uint32_t item : refs_of(tree, leaf))
       if (test::overlap(boxes[item], query)) found.push_back(item);
   });
@@ -61,13 +61,10 @@ std::vector<std::uint32_t> found_by_force(const std::vector<Aabb>& boxes, const 
 
 class KdTreeOfScene : public ::testing::TestWithParam<BoxScene> {};
 
-TEST_P(KdTreeOfScene, IsWellFormedAndBoundedByTheBoxes) {
+TEST_P(KdTreeOfScene, IsSoundAndNotTooLarge) {
   const std::vector<Aabb>& boxes = GetParam().boxes;
   const KdTree tree = build_kd_tree(boxes);
-  EXPECT_TRUE(is_well_formed(tree.view(), 0, static_cast<std::uint32_t>(boxes.size())));
-  Aabb bounds;
-  for (const Aabb& box : boxes) bounds.extend(box);
-  EXPECT_EQ(tree.bounds, bounds);
+  EXPECT_EQ(validate(tree.view(), boxes), "");
   EXPECT_LE(tree.refs.size(), 8 * boxes.size());
 }
 
@@ -100,29 +97,11 @@ TEST_P(KdTreeOfScene, CoversEveryPointOfEveryBoxByALeafThatListsIt) {
       const Vec3f p{coordinate(boxes[item], 0), coordinate(boxes[item], 1),
                     coordinate(boxes[item], 2)};
       bool covered = false;
-      for_each_leaf(tree, {p, p}, [&](const KdNode& leaf, const Aabb&) {
-        covered = covered || lists(tree, leaf, item);
-      });
+      for_each_leaf(tree, {p, p},
+                    [&](const KdNode& leaf) { covered = covered || lists(tree, leaf, item); });
       ASSERT_TRUE(covered) << "seed " << seed << " item " << item << " at " << p.x << ' ' << p.y
                            << ' ' << p.z;
     }
-}
-
-TEST_P(KdTreeOfScene, ListsAnItemWhereItEntersACellAndNowhereElse) {
-  const std::vector<Aabb>& boxes = GetParam().boxes;
-  const KdTree tree = build_kd_tree(boxes);
-  for_each_leaf(tree, tree.bounds, [&](const KdNode& leaf, const Aabb& cell) {
-    for (std::uint32_t item = 0; item < boxes.size(); ++item) {
-      const Aabb part = intersection(boxes[item], cell);
-      const Vec3f e = part.extent();
-      const bool enters = e.x > 0 && e.y > 0 && e.z > 0;
-      if (enters) {
-        ASSERT_TRUE(lists(tree, leaf, item)) << item;
-      } else if (part.empty()) {
-        ASSERT_FALSE(lists(tree, leaf, item)) << item;
-      }
-    }
-  });
 }
 
 TEST_P(KdTreeOfScene, FindsTheSameBoxesAsBruteForce) {
@@ -137,15 +116,7 @@ TEST_P(KdTreeOfScene, FindsTheSameBoxesAsBruteForce) {
   }
 }
 
-TEST_P(KdTreeOfScene, HasSplitsStrictlyInsideTheirCells) {
-  const KdTree tree = build_kd_tree(GetParam().boxes);
-  for_each_leaf(tree, tree.bounds, [&](const KdNode&, const Aabb& cell) {
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      ASSERT_TRUE(cell.lo[axis] < cell.hi[axis] || tree.bounds.lo[axis] == tree.bounds.hi[axis]);
-  });
-}
-
-TEST_P(KdTreeOfScene, IsNeverDearerThanOneLeaf) {
+TEST_P(KdTreeOfScene, IsNeverMoreExpensiveThanOneLeaf) {
   const std::vector<Aabb>& boxes = GetParam().boxes;
   const KdBuildConfig config;
   const double one_leaf = static_cast<double>(config.intersect_cost) * boxes.size();

@@ -8,8 +8,6 @@
 #include "common/trace/color.h"
 #include "common/trace/heat_map.h"
 #include "common/trace/renderer.h"
-#include "common/trace/residuals.h"
-#include "common/trace/shutter.h"
 
 namespace mdk {
 namespace {
@@ -126,14 +124,14 @@ TEST(Samples, ImpossibleNumbersAreRefused) {
   FrameRequest request = request_of(at_key(0));
   request.samples = 0;
   EXPECT_THROW(renderer.render(request), Error);
-  request.samples = kMostSamples + 1;
+  request.samples = kMaxSamples + 1;
   EXPECT_THROW(renderer.render(request), Error);
   request.samples = 2;
   const std::vector<KeyInterval> one_moment = {at_key(0)};
   request.shutter = one_moment;
   EXPECT_THROW(renderer.render(request), Error);
   request.shutter = {};
-  request.occlusion_rays = kMostOcclusionRays + 1;
+  request.occlusion_rays = kMaxOcclusionRays + 1;
   EXPECT_THROW(renderer.render(request), Error);
 }
 

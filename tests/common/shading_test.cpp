@@ -8,7 +8,6 @@
 #include "common/base/error.h"
 #include "common/trace/color.h"
 #include "common/trace/renderer.h"
-#include "common/trace/texture_sampling.h"
 
 namespace mdk {
 namespace {

@@ -1,69 +1,30 @@
-// Wide hierarchies: every item in one leaf, boxes exact, links forward; the same after refitting.
+// Wide hierarchies and top levels: every item in one leaf, boxes exact, links forward; the same
+// after refitting; and their checks find what is broken.
 #include "common/structures/wide_bvh.h"
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <functional>
+
 #include "common/base/parallel.h"
-#include "common/structures/top_level.h"
+#include "common/structures/wide_bvh.h"
 #include "tests/common/random_boxes.h"
 
 namespace mdk {
 namespace {
 
 using test::BoxScene;
-using ::testing::Each;
-
-/// Each node and leaf reached once and in order, each item in one leaf, each box exact.
-void expect_sound(const WideBvh& bvh, const std::vector<Aabb>& boxes) {
-  std::vector<int> times_reached(bvh.nodes.size(), 0), times_listed(boxes.size(), 0);
-  std::uint32_t leaves = 0;
-  times_reached[0] = 1;
-  for (std::uint32_t i = 0; i < bvh.nodes.size(); ++i) {
-    const WideBvhNode& node = bvh.nodes[i];
-    ASSERT_GE(node.count, 1u);
-    ASSERT_LE(node.count, kBvhWidth);
-    for (std::uint32_t c = 0; c < kBvhWidth; ++c) {
-      if (c >= node.count) {
-        EXPECT_EQ(node.box(c), node.box(0)) << "an unused column must hold numbers";
-        continue;
-      }
-      const std::uint32_t index = node.child[c].index();
-      if (!node.child[c].is_leaf()) {
-        ASSERT_GT(index, i);
-        ASSERT_LT(index, bvh.nodes.size());
-        ++times_reached[index];
-        ASSERT_EQ(node.box(c), bvh.nodes[index].box());
-        continue;
-      }
-      ASSERT_LT(index, bvh.leaf_count());
-      ++leaves;
-      Aabb exact;
-      bool ended = false;
-      for (const std::uint32_t item : bvh.leaf(index)) {
-        ASSERT_FALSE(ended && item != kNoItem) << "items come first";
-        ended = item == kNoItem;
-        if (ended) continue;
-        ++times_listed[item];
-        exact.extend(boxes[item]);
-      }
-      ASSERT_EQ(node.box(c), exact);
-    }
-  }
-  EXPECT_EQ(leaves, bvh.leaf_count());
-  EXPECT_THAT(times_reached, Each(1));
-  EXPECT_THAT(times_listed, Each(1));
-}
 
 class WideBvhOfScene : public ::testing::TestWithParam<BoxScene> {};
 
 TEST_P(WideBvhOfScene, IsSound) {
   for (const int bins : {2, 16, 64})
-    expect_sound(build_wide_bvh(GetParam().boxes, bins), GetParam().boxes);
+    EXPECT_EQ(validate(build_wide_bvh(GetParam().boxes, bins), GetParam().boxes), "") << bins;
 }
 
 TEST_P(WideBvhOfScene, IsSoundWithOneItemPerLeaf) {
-  expect_sound(collapse(build_bvh(GetParam().boxes, {.max_leaf = 1})), GetParam().boxes);
+  EXPECT_EQ(validate(collapse(build_bvh(GetParam().boxes, {.max_leaf = 1})), GetParam().boxes), "");
 }
 
 TEST_P(WideBvhOfScene, IsSoundAfterItsBoxesMoveAndRefit) {
@@ -75,8 +36,15 @@ TEST_P(WideBvhOfScene, IsSoundAfterItsBoxesMoveAndRefit) {
     box =
         test::box_at(random.point({{-5, -5, -5}, {5, 5, 5}}), random.point({{0, 0, 0}, {1, 1, 1}}));
   refit_wide_bvh(bvh, boxes);
-  expect_sound(bvh, boxes);
+  EXPECT_EQ(validate(bvh, boxes), "");
   EXPECT_EQ(bvh.items, items);
+}
+
+TEST_P(WideBvhOfScene, RefitsToItselfWhereNothingMoved) {
+  WideBvh bvh = build_wide_bvh(GetParam().boxes, 16);
+  for (WideBvhNode& node : bvh.nodes) node.set_box(0, {{-9, -9, -9}, {-8, -8, -8}});
+  refit_wide_bvh(bvh, GetParam().boxes);
+  EXPECT_EQ(validate(bvh, GetParam().boxes), "");
 }
 
 TEST_P(WideBvhOfScene, TopLevelHasEveryBoxInALeafOfItsOwn) {
@@ -84,17 +52,7 @@ TEST_P(WideBvhOfScene, TopLevelHasEveryBoxInALeafOfItsOwn) {
   TopLevel top;
   build_top_level(boxes, top);
   build_top_level(boxes, top);  // what an earlier frame left must not matter
-  ASSERT_EQ(top.box_of_leaf.size(), boxes.size());
-  std::vector<bool> seen(boxes.size(), false);
-  for (const std::uint32_t box : top.box_of_leaf) seen[box] = true;
-  EXPECT_THAT(seen, Each(true));
-  for (const WideBvhNode& node : top.nodes)
-    for (std::uint32_t c = 0; c < node.count; ++c)
-      if (node.child[c].is_leaf()) {
-        EXPECT_EQ(node.box(c), boxes[top.box_of_leaf[node.child[c].index()]]);
-      } else {
-        EXPECT_EQ(node.box(c), top.nodes[node.child[c].index()].box());
-      }
+  EXPECT_EQ(validate(top, boxes), "");
 }
 
 INSTANTIATE_TEST_SUITE_P(AllScenes, WideBvhOfScene, ::testing::ValuesIn(test::box_scenes()),
@@ -105,6 +63,59 @@ TEST(WideBvh, OfNothingHasNoNodes) {
   WideBvh none;
   refit_wide_bvh(none, {});
   EXPECT_TRUE(none.nodes.empty());
+}
+
+/// Three full nodes' worth of leaves with one item each.
+struct SmallWideBvh {
+  std::vector<Aabb> boxes;
+  WideBvh bvh;
+
+  SmallWideBvh() {
+    for (int i = 0; i < 20; ++i) boxes.push_back(test::box_at({float(i) * 10, 0, 0}, {1, 1, 1}));
+    bvh = collapse(build_bvh(boxes, {.traversal_cost = 0, .max_leaf = 1}));
+  }
+  /// The first child of the root that is a leaf, or is not one.
+  WideBvhChild& child_of_root(bool is_leaf) {
+    return *std::ranges::find(bvh.nodes[0].child, is_leaf, &WideBvhChild::is_leaf);
+  }
+  std::string fault() const { return validate(bvh, boxes); }
+};
+
+TEST(WideBvhCheck, FindsEachKindOfFault) {
+  using Break = std::function<void(SmallWideBvh&)>;
+  const std::pair<const char*, Break> faults[] = {
+      {"has another box for node",
+       [](SmallWideBvh& s) { s.bvh.nodes[s.child_of_root(false).index()].bounds[1][0] += 1000; }},
+      {"a leaf's box is not that of its items", [](SmallWideBvh& s) { s.boxes[7].lo.y = -1; }},
+      {"not the first to link to node 0",
+       [](SmallWideBvh& s) { s.child_of_root(false) = WideBvhChild::inner(0); }},
+      {"links to node 99, which there is not",
+       [](SmallWideBvh& s) { s.child_of_root(false) = WideBvhChild::inner(99); }},
+      {"no node before it links to it",
+       [](SmallWideBvh& s) { s.bvh.nodes.push_back(s.bvh.nodes[0]); }},
+      {"links to leaf 99, which there is not",
+       [](SmallWideBvh& s) { s.child_of_root(false) = WideBvhChild::leaf(99); }},
+      {"nothing links to leaf 20",
+       [](SmallWideBvh& s) { s.bvh.items.resize(s.bvh.items.size() + kLeafItems, kNoItem); }},
+      {"0 children", [](SmallWideBvh& s) { s.bvh.nodes.back().count = 0; }},
+      {"9 children", [](SmallWideBvh& s) { s.bvh.nodes.back().count = 9; }},
+      {"column 7 does not repeat the first one",
+       [](SmallWideBvh& s) {
+         WideBvhNode& node = *std::ranges::find_if(
+             s.bvh.nodes, [](const WideBvhNode& n) { return n.count < kBvhWidth; });
+         node.bounds[0][7] -= 1;
+       }},
+      {"links to item 99, which there is not", [](SmallWideBvh& s) { s.bvh.items[0] = 99; }},
+      {"not the first to link to item", [](SmallWideBvh& s) { s.bvh.items[1] = s.bvh.items[0]; }},
+      {"an item behind an unused place", [](SmallWideBvh& s) { s.bvh.items[2] = 0; }},
+      {"nothing links to item 20", [](SmallWideBvh& s) { s.boxes.push_back(s.boxes[0]); }},
+  };
+  EXPECT_EQ(SmallWideBvh().fault(), "");
+  for (const auto& [fault, break_it] : faults) {
+    SmallWideBvh broken;
+    break_it(broken);
+    EXPECT_NE(broken.fault().find(fault), std::string::npos) << broken.fault() << " for " << fault;
+  }
 }
 
 TEST(WideBvh, FillsNodesAndLeaves) {
@@ -135,12 +146,58 @@ TEST(WideBvh, IsTheSameForEveryNumberOfThreads) {
   }
 }
 
+TEST(WideBvhCost, IsThatOfTheFormulaOnAHandMadeTree) {
+  WideBvh bvh;
+  bvh.nodes.resize(2);
+  bvh.nodes[0].set_box(0, {{0, 0, 0}, {1, 1, 1}});  // area 6
+  bvh.nodes[0].child[0] = WideBvhChild::leaf(0);
+  bvh.nodes[0].set_box(1, {{2, 0, 0}, {4, 1, 1}});  // area 10
+  bvh.nodes[0].child[1] = WideBvhChild::inner(1);
+  bvh.nodes[0].count = 2;
+  bvh.nodes[1].set_box(0, {{2, 0, 0}, {4, 1, 1}});
+  bvh.nodes[1].child[0] = WideBvhChild::leaf(1);
+  bvh.nodes[1].count = 1;
+  EXPECT_NEAR(sah_cost(bvh), 1 + (6 + 10 + 10) / 18.0, 1e-12);
+  EXPECT_EQ(sah_cost(WideBvh{}), 0);
+}
+
+TEST(WideBvhCost, GrowsWhenItemsMoveApart) {
+  std::vector<Aabb> boxes = test::scattered_boxes(500, 1, 0.02f, 55);
+  WideBvh bvh = build_wide_bvh(boxes, 16);
+  const double before = sah_cost(bvh);
+  std::reverse(boxes.begin(), boxes.end());  // every box goes where another one was
+  refit_wide_bvh(bvh, boxes);
+  EXPECT_GT(sah_cost(bvh), 2 * before);
+}
+
 TEST(TopLevel, LeavesOutEmptyBoxes) {
   TopLevel top;
   build_top_level(std::vector<Aabb>{Aabb{}, {{0, 0, 0}, {1, 1, 1}}, Aabb{}}, top);
   EXPECT_EQ(top.box_of_leaf, std::vector<std::uint32_t>{1});
+  EXPECT_EQ(validate(top, std::vector<Aabb>{Aabb{}, {{0, 0, 0}, {1, 1, 1}}, Aabb{}}), "");
   build_top_level(std::vector<Aabb>(5), top);
   EXPECT_TRUE(top.nodes.empty());
+}
+
+TEST(TopLevelCheck, FindsEachKindOfFault) {
+  const std::vector<Aabb> boxes = test::scattered_boxes(30, 1, 0.1f, 64);
+  TopLevel top;
+  build_top_level(boxes, top);
+  ASSERT_EQ(validate(top, boxes), "");
+  TopLevel twice = top;
+  twice.box_of_leaf[1] = twice.box_of_leaf[0];
+  EXPECT_NE(validate(twice, boxes).find("not the first to link to box"), std::string::npos);
+  TopLevel unlinked = top;
+  unlinked.box_of_leaf.push_back(0);
+  EXPECT_EQ(validate(unlinked, boxes), "nothing links to leaf 30");
+  std::vector<Aabb> other = boxes;
+  other[3].hi.x += 1;
+  EXPECT_NE(validate(top, other).find("another box for box 3"), std::string::npos);
+  other = boxes;
+  other.push_back(boxes[0]);
+  EXPECT_EQ(validate(top, other), "nothing links to box 30");
+  other.back() = Aabb{};
+  EXPECT_EQ(validate(top, other), "");
 }
 
 }  // namespace

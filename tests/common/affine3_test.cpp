@@ -1,10 +1,11 @@
-#include "common/math/affine_path.h"
-
+// The map between two keys: exact where parts turn, bounded where its inverse is singular.
 #include <gtest/gtest.h>
 
 #include <limits>
 #include <random>
 #include <vector>
+
+#include "common/math/affine3.h"
 
 namespace mdk {
 namespace {
@@ -107,8 +108,8 @@ TEST(DeterminantBounds, HoldTheDeterminantBetween) {
     const DeterminantBounds bounds(a, b);
     for (int step = 0; step <= 16; ++step) {
       const double determinant = mix(a, b, step / 16.0).determinant();
-      EXPECT_LE(bounds.least(), determinant + 1e-14);
-      EXPECT_GE(bounds.most(), determinant - 1e-14);
+      EXPECT_LE(bounds.min(), determinant + 1e-14);
+      EXPECT_GE(bounds.max(), determinant - 1e-14);
     }
   }
 }

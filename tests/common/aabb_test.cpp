@@ -1,5 +1,4 @@
-#include "common/math/quantized_box.h"
-
+// Boxes on the grid of another box: they hold what they are made of, tightly and in order.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -9,6 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "common/math/aabb.h"
+
 namespace mdk {
 namespace {
 
@@ -17,8 +18,8 @@ constexpr std::uint32_t kSeed = 20261122;
 /// Intervals as boxes have them: usual ones, flat, a few float steps wide, lopsided, at the ends of
 /// what a float holds.
 std::vector<std::pair<float, float>> frame_sides() {
-  constexpr float kMost = std::numeric_limits<float>::max();
-  constexpr float kLeast = std::numeric_limits<float>::denorm_min();
+  constexpr float kMax = std::numeric_limits<float>::max();
+  constexpr float kMin = std::numeric_limits<float>::denorm_min();
   return {{-1, 1},
           {0, 0},
           {7, 7},
@@ -28,10 +29,10 @@ std::vector<std::pair<float, float>> frame_sides() {
           {-1e-30f, 1e10f},
           {1e6f, 1e6f + 3},
           {-2e-6f, 1e-6f},
-          {0, kLeast},
-          {-kMost, kMost},
-          {0, kMost},
-          {-kLeast, 40 * kLeast}};
+          {0, kMin},
+          {-kMax, kMax},
+          {0, kMax},
+          {-kMin, 40 * kMin}};
 }
 
 float between(float lo, float hi, std::mt19937& random) {
