@@ -91,16 +91,16 @@ Shader::Shader(const Model& model)
     std::fill_n(triangle_cluster_.begin() + cluster.first_triangle, cluster.triangle_count, c);
     cluster_colors_.push_back(cluster_color(c));
   }
-  for (const Material& material : model.materials) {
+  for (const Material& material : model.appearance.materials) {
     const float* color = material.base_color;
     material_colors_.push_back({color[0], color[1], color[2]});
     is_unlit_material_.push_back((material.flags & kMaterialUnlit) != 0);
     has_unlit_ = has_unlit_ || is_unlit_material_.back() != 0;
     has_textures_ = has_textures_ || material.texture != kNoTexture;
   }
-  has_textures_ = has_textures_ && !model.corner_texcoords.empty();
+  has_textures_ = has_textures_ && !model.appearance.corner_texcoords.empty();
   for (std::size_t t = 0; t < is_flat_.size(); ++t) {
-    const Material& material = model.materials[model.triangle_materials[t]];
+    const Material& material = model.appearance.materials[model.appearance.triangle_materials[t]];
     is_flat_[t] = (material.flags & kMaterialFlatShaded) != 0;
   }
 }
@@ -118,8 +118,9 @@ ShadedMesh Shader::shaded_mesh(ShadingMode mode) const {
     shaded.palette_index = heat_.triangle_colors().data();
   } else {
     shaded.palette = material_colors_.data();
-    shaded.palette_index = model_->triangle_materials.data();
-    if (!model_->corner_colors.empty()) shaded.corner_colors = model_->corner_colors.data();
+    shaded.palette_index = model_->appearance.triangle_materials.data();
+    if (!model_->appearance.corner_colors.empty())
+      shaded.corner_colors = model_->appearance.corner_colors.data();
   }
   return shaded;
 }
@@ -137,14 +138,15 @@ void Shader::apply_textures(Tile& tile) const {
   for (std::uint32_t i = 0; i < tile.rows * kTileSide; ++i) {
     const std::uint32_t triangle = tile.hits->triangle[i];
     if (triangle == kNoHit) continue;
-    const Material& material = model_->materials[model_->triangle_materials[triangle]];
+    const Material& material =
+        model_->appearance.materials[model_->appearance.triangle_materials[triangle]];
     if (material.texture == kNoTexture) continue;
     const float bary[3] = {1 - s.bary1[i] - s.bary2[i], s.bary1[i], s.bary2[i]};
-    const auto* uv = &model_->corner_texcoords[std::size_t{3} * triangle];
+    const auto* uv = &model_->appearance.corner_texcoords[std::size_t{3} * triangle];
     const TexCoord at{uv[0].u * bary[0] + uv[1].u * bary[1] + uv[2].u * bary[2],
                       uv[0].v * bary[0] + uv[1].v * bary[1] + uv[2].v * bary[2]};
-    const Vec3f texel =
-        sample_texture(model_->textures[material.texture], model_->texels, at, material);
+    const Vec3f texel = sample_texture(model_->appearance.textures[material.texture],
+                                       model_->appearance.texels, at, material);
     s.red[i] *= texel.x;
     s.green[i] *= texel.y;
     s.blue[i] *= texel.z;
@@ -165,7 +167,8 @@ HeatScale Shader::prepare_heat(const ShadingInput& input, ShadingMode mode) {
 }
 
 bool Shader::is_unlit(std::uint32_t triangle) const {
-  return triangle != kNoHit && is_unlit_material_[model_->triangle_materials[triangle]] != 0;
+  return triangle != kNoHit &&
+         is_unlit_material_[model_->appearance.triangle_materials[triangle]] != 0;
 }
 
 void Shader::show_normals(Tile& tile) const {
