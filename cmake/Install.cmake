@@ -41,8 +41,8 @@ install(TARGETS mdk_defaults mdk_trace mdk_formats EXPORT mdk
   ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT dev)
 install(DIRECTORY common DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/mdk COMPONENT dev
   FILES_MATCHING PATTERN "*.h")
-install(FILES formats/mdk_view.h formats/mdk_origin.h COMPONENT dev
-  DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/mdk/formats)
+install(FILES formats/mdk/mdk_file.h COMPONENT dev
+  DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/mdk/formats/mdk)
 install(EXPORT mdk NAMESPACE mdk:: FILE mdkTargets.cmake DESTINATION ${MDK_CMAKE_DIR} COMPONENT dev)
 configure_package_config_file(cmake/mdkConfig.cmake.in ${PROJECT_BINARY_DIR}/mdkConfig.cmake
   INSTALL_DESTINATION ${MDK_CMAKE_DIR})

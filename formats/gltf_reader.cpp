@@ -205,6 +205,7 @@ ReadResult unfold(Document document, Notes& notes, const ReadOptions& options,
 
   ReadResult result;
   PoseSequence& sequence = result.sequence;
+  sequence.positions = PositionList(options.scratch);
   const NodePose first_pose = pose_nodes(document, clips[0], 0.0);
   const std::vector<std::uint64_t> groups = assemble(document, scene, first_pose, notes, sequence);
   const RigPlan plan(scene.instances, scene.skins);

@@ -1,25 +1,3 @@
-// Writes a model as one .mdk image (docs/file-format.md).
+// Moved.
 #pragma once
-
-#include <string>
-
-#include "common/base/progress.h"
-#include "common/motion/model.h"
-#include "formats/atomic_file.h"
-#include "formats/mdk_origin.h"
-
-namespace mdk {
-
-struct MdkWriteOptions {
-  MdkOrigin origin;
-  Overwrite overwrite = Overwrite::kAlways;
-  ProgressSink* progress = nullptr;  ///< hears of stage "write", where given
-};
-
-/// Writes the whole file or nothing: a temporary name in the same folder, fsync, rename. The bytes
-/// depend on the model and the origin alone. Returns the file's size in bytes. Throws Error (kIo)
-/// naming `path`.
-std::uint64_t write_mdk(const Model& model, const std::string& path,
-                        const MdkWriteOptions& options = {});
-
-}  // namespace mdk
+#include "formats/mdk/writer.h"

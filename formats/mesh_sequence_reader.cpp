@@ -107,8 +107,9 @@ ReadResult read_mesh_sequence(const NumberedFiles& sequence, const ReadOptions& 
   require_room(sequence, first.vertices.size());
   ReadResult result = begin_result(files.front(), first);
   PoseSequence& poses = result.sequence;
-  poses.positions = std::move(first.vertices);
+  poses.positions = PositionList(options.scratch);
   poses.positions.reserve(files.size() * poses.vertex_count);
+  poses.positions.assign(first.vertices.begin(), first.vertices.end());
 
   bool colors_change = false;
   for (std::size_t begin = 1; begin < files.size(); begin += kFilesPerReport) {
@@ -142,7 +143,8 @@ ReadResult read_cached_mesh(const std::string& mesh, const std::string& cache,
   TriangleMesh first = read_mesh(mesh, ObjContent::kShapeAndMaterials);
   ReadResult result = begin_result(mesh, first);
   ProgressPart copying(progress, 0, kCopied);
-  PointCache frames = read_point_cache(cache, {options.fps, result.sequence.vertex_count}, copying);
+  PointCache frames = read_point_cache(
+      cache, {options.fps, result.sequence.vertex_count, options.scratch}, copying);
   result.sequence.key_times = std::move(frames.key_times);
   result.sequence.positions = std::move(frames.positions);
   finish(name, result.sequence);

@@ -115,7 +115,7 @@ bool copy_frame(ByteSpan bytes, std::endian order, std::span<Vec3f> out) {
 }
 
 /// The first frame with a coordinate that is not finite, or the number of frames.
-std::uint32_t copy_frames(ByteSpan bytes, const Layout& layout, std::vector<Vec3f>& positions,
+std::uint32_t copy_frames(ByteSpan bytes, const Layout& layout, PositionList& positions,
                           ProgressSink& progress) {
   const std::size_t frame_bytes = std::size_t{layout.points} * kPointBytes;
   std::atomic<std::uint32_t> broken{layout.frames};
@@ -151,6 +151,7 @@ PointCache read_point_cache(const std::string& path, const PointCacheOptions& op
   Layout layout =
       is_pc2 ? read_pc2_header(path, bytes, options) : read_mdd_header(path, bytes, options);
   PointCache cache;
+  cache.positions = PositionList(options.scratch);
   cache.positions.reserve(std::size_t{layout.points} * layout.frames);
   const std::uint32_t broken = copy_frames(bytes, layout, cache.positions, progress);
   if (broken < layout.frames)

@@ -6,18 +6,19 @@
 #include <vector>
 
 #include "common/base/progress.h"
-#include "common/math/vec3.h"
+#include "common/motion/pose_sequence.h"
 
 namespace mdk {
 
 struct PointCache {
   std::vector<double> key_times;  ///< seconds from the first frame, rising
-  std::vector<Vec3f> positions;   ///< key-major, as many per key as the mesh has vertices
+  PositionList positions;         ///< key-major, as many per key as the mesh has vertices
 };
 
 struct PointCacheOptions {
   double fps = 30;                 ///< frames per second, where the file counts frames (.pc2)
   std::uint32_t vertex_count = 0;  ///< of the mesh that is moved
+  ScratchFolder scratch = {};      ///< where the positions stand
 };
 
 /// POINTCACHE2 version 1 (little-endian; frames `rate` apart, at `fps`) or, for any other start,

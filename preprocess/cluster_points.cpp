@@ -17,7 +17,7 @@ void resize(ClusterPoints& points, std::uint32_t rows, std::uint32_t vertices) {
   points.vertex_count = vertices;
   points.stride = padded(vertices);
   points.centers.resize(rows);
-  for (std::vector<float>* a : {&points.x, &points.y, &points.z})
+  for (ScratchList<float>* a : {&points.x, &points.y, &points.z})
     a->assign(rows * points.stride, 0.0f);
   points.weights.assign(points.stride, 0.0f);
 }
@@ -58,10 +58,11 @@ FitMoments row_moments(const SecondMoments& source, const double (&cross)[3][3],
 /// `position`: of a vertex in a row.
 template <class Position>
 ClusterPoints gathered(const ClusterMembers& members, std::uint32_t cluster, std::uint32_t rows,
-                       const Position& position) {
+                       const ScratchFolder& scratch, const Position& position) {
   const std::uint32_t first = members.vertex_begin[cluster];
   const std::uint32_t count = members.vertex_begin[cluster + 1] - first;
   ClusterPoints points;
+  points.x = points.y = points.z = ScratchList<float>(scratch);
   resize(points, rows, count);
   double weight = 0;
   for (std::uint32_t i = 0; i < count; ++i) {
@@ -97,16 +98,19 @@ ClusterPoints gathered(const ClusterMembers& members, std::uint32_t cluster, std
 
 ClusterPoints gather_points(const PoseTable& table, const ClusterMembers& members,
                             std::uint32_t cluster) {
-  return gathered(members, cluster, table.row_count(),
+  return gathered(members, cluster, table.row_count(), {},
                   [&](std::uint32_t row, std::uint32_t v) { return table.position(row, v); });
 }
 
 ClusterPoints gather_points(const PoseSequence& sequence, const ClusterMembers& members,
                             std::uint32_t cluster, double unit) {
   const double per_unit = 1 / unit;
-  return gathered(members, cluster, sequence.key_count(), [&](std::uint32_t key, std::uint32_t v) {
-    return to_double(sequence.positions[std::size_t{key} * sequence.vertex_count + v]) * per_unit;
-  });
+  const ScratchFolder& scratch = sequence.positions.get_allocator().folder();
+  return gathered(
+      members, cluster, sequence.key_count(), scratch, [&](std::uint32_t key, std::uint32_t v) {
+        return to_double(sequence.positions[std::size_t{key} * sequence.vertex_count + v]) *
+               per_unit;
+      });
 }
 
 ClusterPoints gather_subset(const ClusterPoints& points, std::span<const std::uint32_t> triangles) {

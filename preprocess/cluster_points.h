@@ -23,7 +23,7 @@ struct ClusterPoints {
   std::uint32_t row_count = 0, vertex_count = 0;
   std::size_t stride = 0;              ///< vertex_count rounded up to kSumLanes; the rest is zero
   std::vector<Vec3d> centers;          ///< R: table coordinates of each row's origin
-  std::vector<float> x, y, z;          ///< R * stride
+  ScratchList<float> x, y, z;          ///< R * stride; of a sequence, where its positions stand
   std::vector<float> weights;          ///< stride: corners that use the vertex, 0 past the end
   std::vector<std::uint32_t> corners;  ///< 3 per triangle: vertices 0..n-1
 

@@ -118,13 +118,13 @@ BlockPlan plan_block(const RunPose& run, const Affine3d& local_from_world, const
   return cost(in_world) < cost(in_cluster) ? in_world : in_cluster;
 }
 
-void write_bits(std::vector<std::uint32_t>& words, std::uint64_t at, std::uint32_t value) {
+void write_bits(std::span<std::uint32_t> words, std::uint64_t at, std::uint32_t value) {
   const std::uint64_t two = std::uint64_t{value} << (at % 32);
   words[at / 32] |= static_cast<std::uint32_t>(two);
   if (two >> 32 != 0) words[at / 32 + 1] |= static_cast<std::uint32_t>(two >> 32);
 }
 
-void pack_block(const RunPose& run, const BlockPlan& plan, std::vector<std::uint32_t>& words) {
+void pack_block(const RunPose& run, const BlockPlan& plan, std::span<std::uint32_t> words) {
   std::uint64_t at = plan.block.first_bit;
   for (std::uint32_t v = run.vertices.begin; v < run.vertices.end; ++v) {
     const Vec3d d =
@@ -155,6 +155,7 @@ class Quantizer {
         runs_(owned_runs(members, sequence.vertex_count)),
         maps_(local_from_world),
         clusters_(members.cluster_count()) {
+    poses_.words = ScratchList<std::uint32_t>(sequence.positions.get_allocator().folder());
     poses_.first_vertex = {0};
     poses_.rest_positions.resize(sequence.vertex_count);
     for (const Run& run : runs_) {

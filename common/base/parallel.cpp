@@ -1,64 +1,81 @@
+// What a thread's loops go by lies with the thread, since loops are too deep to hand it down to
+// each. Threads that help with a loop take over what its own thread has, while they do. A limit has
+// an arena, oneTBB's name for a group of threads with so many places.
 #include "common/base/parallel.h"
 
 #include <tbb/blocked_range.h>
-#include <tbb/global_control.h>
 #include <tbb/info.h>
 #include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 
 namespace mdk {
 namespace {
 
-// Of the thread, since loops lie too deep to hand it down to each.
-thread_local const std::function<void()>* loop_check = nullptr;
+struct LoopContext {
+  const std::function<void()>* check = nullptr;
+  int max_threads = 0;               ///< 0: all cores
+  tbb::task_arena* arena = nullptr;  ///< where the next loop runs; null within it, and without
+};
+thread_local LoopContext context;
 
-// Threads that help with a loop check what its own thread checks, while they do.
-class InheritedCheck {
+/// What a chunk's thread goes by, until the chunk is done.
+class ChunkContext {
  public:
-  explicit InheritedCheck(const std::function<void()>* check)
-      : own_(std::exchange(loop_check, check)) {}
-  ~InheritedCheck() { loop_check = own_; }
-  InheritedCheck(const InheritedCheck&) = delete;
-  InheritedCheck& operator=(const InheritedCheck&) = delete;
+  explicit ChunkContext(const LoopContext& of_loop)
+      : own_(std::exchange(context, {of_loop.check, of_loop.max_threads, nullptr})) {}
+  ~ChunkContext() { context = own_; }
+  ChunkContext(const ChunkContext&) = delete;
+  ChunkContext& operator=(const ChunkContext&) = delete;
 
  private:
-  const std::function<void()>* own_;
+  LoopContext own_;
 };
 
 }  // namespace
 
-ThreadLimit::ThreadLimit(int threads) {
-  const std::size_t n =
-      static_cast<std::size_t>(threads > 0 ? threads : tbb::info::default_concurrency());
-  control_ = new tbb::global_control(tbb::global_control::max_allowed_parallelism, n);
+struct ThreadLimit::Scope {
+  explicit Scope(int threads) : outer(context) {
+    if (threads <= 0 || (outer.max_threads > 0 && outer.max_threads <= threads)) return;
+    context.max_threads = threads;
+    context.arena = threads > 1 ? &arena.emplace(threads) : nullptr;
+  }
+
+  LoopContext outer;
+  std::optional<tbb::task_arena> arena;
+};
+
+ThreadLimit::ThreadLimit(int threads) : scope_(std::make_unique<Scope>(threads)) {}
+
+ThreadLimit::~ThreadLimit() {
+  context.max_threads = scope_->outer.max_threads;
+  context.arena = scope_->outer.arena;
 }
 
-ThreadLimit::~ThreadLimit() { delete static_cast<tbb::global_control*>(control_); }
-
 LoopCheck::LoopCheck(std::function<void()> check)
-    : check_(std::move(check)), outer_(std::exchange(loop_check, &check_)) {}
+    : check_(std::move(check)), outer_(std::exchange(context.check, &check_)) {}
 
-LoopCheck::~LoopCheck() { loop_check = outer_; }
+LoopCheck::~LoopCheck() { context.check = outer_; }
 
 void check_loop() {
-  if (loop_check) (*loop_check)();
+  if (context.check) (*context.check)();
 }
 
 int thread_count() {
-  const auto limit =
-      tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
-  return static_cast<int>(std::max<std::size_t>(1, limit));
+  return context.max_threads > 0 ? context.max_threads
+                                 : std::max(1, tbb::info::default_concurrency());
 }
 
 void parallel_chunks(std::size_t n, std::size_t grain,
                      const std::function<void(std::size_t, std::size_t)>& body) {
   grain = std::max<std::size_t>(1, grain);
   const std::size_t chunks = (n + grain - 1) / grain;
-  const auto* const check = loop_check;
+  const LoopContext of_loop = context;
   const auto run_chunk = [&](std::size_t c) {
-    const InheritedCheck inherited(check);
+    const ChunkContext of_chunk(of_loop);
     check_loop();
     body(c * grain, std::min(n, (c + 1) * grain));
   };
@@ -66,12 +83,19 @@ void parallel_chunks(std::size_t n, std::size_t grain,
     for (std::size_t c = 0; c < chunks; ++c) run_chunk(c);
     return;
   }
-  tbb::parallel_for(
-      tbb::blocked_range<std::size_t>(0, chunks, 1),
-      [&](const tbb::blocked_range<std::size_t>& r) {
-        for (std::size_t c = r.begin(); c != r.end(); ++c) run_chunk(c);
-      },
-      tbb::simple_partitioner{});
+  const auto run_all = [&] {
+    tbb::parallel_for(
+        tbb::blocked_range<std::size_t>(0, chunks, 1),
+        [&](const tbb::blocked_range<std::size_t>& r) {
+          for (std::size_t c = r.begin(); c != r.end(); ++c) run_chunk(c);
+        },
+        tbb::simple_partitioner{});
+  };
+  if (of_loop.arena) {
+    of_loop.arena->execute(run_all);
+  } else {
+    run_all();
+  }
 }
 
 }  // namespace mdk

@@ -8,32 +8,7 @@ namespace mdk {
 
 Model ModelStorage::view() const {
   Model model;
-  model.vertex_count = vertex_count;
-  model.rest_key = rest_key;
-  model.bounds = bounds;
-  model.rest_diagonal = rest_diagonal;
-  model.clips = clips;
-  model.key_times = key_times;
-  model.poses = poses.view();
-  model.triangles = triangles;
-  model.source_triangles = source_triangles;
-  model.clusters = clusters;
-  model.local_from_world = local_from_world;
-  model.key_boxes = key_boxes;
-  model.cluster_world_boxes = cluster_world_boxes;
-  model.skeleton = skeleton.view();
-  model.cluster_bones = cluster_bones;
-  model.segments = segments;
-  model.fuzzy_trees = fuzzy_trees;
-  model.fuzzy_boxes = fuzzy_boxes;
-  model.kd_nodes = kd_nodes;
-  model.kd_refs = kd_refs;
-  model.materials = appearance.materials;
-  model.triangle_materials = appearance.triangle_materials;
-  model.corner_texcoords = appearance.corner_texcoords;
-  model.corner_colors = appearance.corner_colors;
-  model.textures = appearance.textures;
-  model.texels = appearance.texels;
+  assign_model(model, *this);
   return model;
 }
 

@@ -1,21 +1,20 @@
 // Model: a decomposed animated mesh ready to be traced, as spans. It owns nothing: the memory is a
-// mapped file (formats/mdk_view.h) or a ModelStorage. Everything here was checked when it was made:
-// tracing may follow every index and link without asking again.
+// mapped file (formats/mdk/mdk_file.h) or a ModelStorage. Everything here was checked when it was
+// made: tracing may follow every index and link without asking again.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <string>
-#include <string_view>
 #include <vector>
 
 #include "common/math/aabb.h"
 #include "common/math/affine3.h"
 #include "common/math/quantized_box.h"
-#include "common/motion/appearance.h"
+#include "common/motion/arrays.h"
 #include "common/motion/pose_sequence.h"
-#include "common/motion/pose_source.h"
+#include "common/motion/quantized_poses.h"
+#include "common/motion/rig.h"
 #include "common/structures/kd_tree.h"
 
 namespace mdk {
@@ -56,47 +55,110 @@ struct ClusterBone {
 };
 static_assert(sizeof(ClusterBone) == 52);
 
-/// F keys, V vertices, T triangles, K clusters, S segments.
-struct Model {
+enum class PoseKind : std::uint32_t {
+  kKeyPositions = 0,  ///< every vertex at every key
+  kRig = 1,           ///< bones and morph targets
+  kQuantized = 2,     ///< key positions with few bits, not quite what was read
+};
+
+/// What key poses are computed from. A model has one kind of source, and its decoded key poses are
+/// *the* poses: boxes bound them, between two keys vertices move on straight lines
+/// (common/motion/posed_mesh.h). Decoding gives the same bits on every machine. F keys, V vertices.
+/// The arrays of other kinds than `kind` are empty.
+template <template <class> class List, template <class> class LargeList = List>
+struct PoseLists {
+  PoseKind kind = PoseKind::kKeyPositions;
+  LargeList<Vec3f> key_positions;  ///< F * V, key-major, world space
+  RigLists<List> rig;
+  QuantizedLists<List, LargeList> quantized;
+};
+using PoseSource = PoseLists<ConstSpan>;
+using PoseStorage = PoseLists<OwnedList, ScratchList>;
+
+/// F keys, V vertices, T triangles, K clusters, S segments. `List<T>` is a span or a vector,
+/// `LargeList<T>` one that may stand in a file. An array is added here, once: a member, and its row
+/// in for_each_array().
+template <template <class> class List, template <class> class LargeList = List>
+struct ModelLists {
   std::uint32_t vertex_count = 0;
   std::uint32_t rest_key = 0;  ///< the pose the local bases were fitted to (GFW06 §3.3)
   Aabb bounds;                 ///< holds the mesh at every time
   double rest_diagonal = 0;    ///< of the rest pose's box: the unit of residuals in reports
 
-  std::span<const Clip> clips;
-  std::span<const double> key_times;  ///< F
-  PoseSource poses;
+  List<Clip> clips;
+  List<double> key_times;  ///< F
+  PoseLists<List, LargeList> poses;
 
   /// Of models whose boxes hold in every pose within the joints' limits; else both are empty.
-  SkeletonView skeleton;
-  std::span<const ClusterBone> cluster_bones;  ///< K
+  SkeletonLists<List> skeleton;
+  List<ClusterBone> cluster_bones;  ///< K
 
-  std::span<const Triangle> triangles;              ///< T, sorted by cluster
-  std::span<const std::uint32_t> source_triangles;  ///< T: the triangle's number in the input
+  List<Triangle> triangles;              ///< T, sorted by cluster
+  List<std::uint32_t> source_triangles;  ///< T: the triangle's number in the input
 
-  std::span<const Cluster> clusters;                  ///< K
-  std::span<const Affine3f> local_from_world;         ///< F * K, key-major
-  std::span<const Aabb> key_boxes;                    ///< F: the mesh at each key
-  std::span<const QuantizedBox> cluster_world_boxes;  ///< F * K, key-major, in the key's box
+  List<Cluster> clusters;                  ///< K
+  List<Affine3f> local_from_world;         ///< F * K, key-major
+  List<Aabb> key_boxes;                    ///< F: the mesh at each key
+  List<QuantizedBox> cluster_world_boxes;  ///< F * K, key-major, in the key's box
 
-  std::span<const Segment> segments;          ///< S, at least one
-  std::span<const FuzzyTree> fuzzy_trees;     ///< S * K, segment-major
-  std::span<const QuantizedBox> fuzzy_boxes;  ///< S * T, segment-major, in the tree's local box
-  std::span<const KdNode> kd_nodes;           ///< node links relative to the tree's first node
-  std::span<const std::uint32_t> kd_refs;     ///< triangle indices (absolute)
+  List<Segment> segments;          ///< S, at least one
+  List<FuzzyTree> fuzzy_trees;     ///< S * K, segment-major
+  List<QuantizedBox> fuzzy_boxes;  ///< S * T, segment-major, in the tree's local box
+  List<KdNode> kd_nodes;           ///< node links relative to the tree's first node
+  List<std::uint32_t> kd_refs;     ///< triangle indices (absolute)
 
-  std::span<const Material> materials;
-  std::span<const std::uint32_t> triangle_materials;  ///< T
-  std::span<const TexCoord> corner_texcoords;         ///< 0 or 3 T
-  std::span<const std::uint32_t> corner_colors;       ///< 0 or 3 T
-  std::span<const Texture> textures;
-  std::span<const std::uint32_t> texels;
+  AppearanceLists<List> appearance;
+
+  /// Calls visit(row, the array of each model) for the arrays that stand in a section of the file
+  /// as they are, in file order: what opening reads first, the bulk last. Counts that others are
+  /// made of come before those. Clips and scalars are records of the file and not visited.
+  template <class Visit, class... Models>
+  static void for_each_array(Visit&& visit, Models&... models) {
+    using enum Count;
+    visit(array_row("TIME", "key_times", some()), models.key_times...);
+    visit(array_row("CLUS", "clusters", some()), models.clusters...);
+    visit(array_row("SEGM", "segments", at_most(kKeys)), models.segments...);
+    visit(array_row("FTRE", "fuzzy_trees", exactly(kSegments, kClusters)), models.fuzzy_trees...);
+    visit(array_row("NODE", "kd_nodes", between(1, kMaxLinks)), models.kd_nodes...);
+    visit(array_row("REFS", "kd_refs", between(0, kMaxLinks)), models.kd_refs...);
+    visit(array_row("TRIS", "triangles", some()), models.triangles...);
+    visit(array_row("SRCT", "source_triangles", exactly(kTriangles)), models.source_triangles...);
+    visit(array_row("MAPS", "local_from_world", exactly(kKeys, kClusters)),
+          models.local_from_world...);
+    visit(array_row("KBOX", "key_boxes", exactly(kKeys)), models.key_boxes...);
+    visit(array_row("WBOX", "cluster_world_boxes", exactly(kKeys, kClusters)),
+          models.cluster_world_boxes...);
+    visit(array_row("FBOX", "fuzzy_boxes", exactly(kSegments, kTriangles)), models.fuzzy_boxes...);
+    Appearance::for_each_array(visit, models.appearance...);
+    Rig::for_each_array(visit, models.poses.rig...);
+    Skeleton::for_each_array(visit, models.skeleton...);
+    visit(array_row("CBON", "cluster_bones", exactly(kClusters), ModelPart::kSkeleton),
+          models.cluster_bones...);
+    QuantizedPoses::for_each_array(visit, models.poses.quantized...);
+    visit(array_row("POSE", "key_positions", exactly(kKeys, kVertices), ModelPart::kKeyPositions),
+          models.poses.key_positions...);
+  }
 
   std::uint32_t key_count() const { return static_cast<std::uint32_t>(key_times.size()); }
   std::uint32_t triangle_count() const { return static_cast<std::uint32_t>(triangles.size()); }
   std::uint32_t cluster_count() const { return static_cast<std::uint32_t>(clusters.size()); }
   std::uint32_t segment_count() const { return static_cast<std::uint32_t>(segments.size()); }
+};
 
+/// Makes `to` a view or a copy of `from`.
+template <class To, class From>
+void assign_model(To& to, const From& from) {
+  to.vertex_count = from.vertex_count;
+  to.rest_key = from.rest_key;
+  to.bounds = from.bounds;
+  to.rest_diagonal = from.rest_diagonal;
+  to.poses.kind = from.poses.kind;
+  kAssign(ModelArray{}, to.clips, from.clips);
+  To::for_each_array(kAssign, to, from);
+}
+
+/// A model as spans.
+struct Model : ModelLists<ConstSpan> {
   /// Maps of all clusters at a key.
   std::span<const Affine3f> key_maps(std::uint32_t key) const {
     return local_from_world.subspan(static_cast<std::size_t>(key) * clusters.size(),
@@ -131,30 +193,7 @@ struct Model {
 };
 
 /// A model that owns its memory: what the decomposition returns, before it is written.
-struct ModelStorage {
-  std::uint32_t vertex_count = 0;
-  std::uint32_t rest_key = 0;
-  Aabb bounds;
-  double rest_diagonal = 0;
-
-  std::vector<Clip> clips;
-  std::vector<double> key_times;
-  PoseStorage poses;
-  Skeleton skeleton;
-  std::vector<ClusterBone> cluster_bones;
-  std::vector<Triangle> triangles;
-  std::vector<std::uint32_t> source_triangles;
-  std::vector<Cluster> clusters;
-  std::vector<Affine3f> local_from_world;
-  std::vector<Aabb> key_boxes;
-  std::vector<QuantizedBox> cluster_world_boxes;
-  std::vector<Segment> segments;
-  std::vector<FuzzyTree> fuzzy_trees;
-  std::vector<QuantizedBox> fuzzy_boxes;
-  std::vector<KdNode> kd_nodes;
-  std::vector<std::uint32_t> kd_refs;
-  Appearance appearance;
-
+struct ModelStorage : ModelLists<OwnedList, ScratchList> {
   /// Valid while this lives and is not changed.
   Model view() const;
 };

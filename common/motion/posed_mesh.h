@@ -11,11 +11,42 @@
 #include <span>
 #include <vector>
 
-#include "common/base/once_marks.h"
-#include "common/motion/cluster_vertices.h"
+#include "common/base/parallel.h"
 #include "common/motion/model.h"
 
 namespace mdk {
+
+/// Which vertices belong to which cluster, so that a cluster can be posed alone: every vertex that
+/// a triangle uses is owned by the first cluster that uses it. Memory: O(runs of vertices + pairs
+/// of clusters that touch).
+class ClusterVertices {
+ public:
+  /// Cost: O(triangles).
+  explicit ClusterVertices(const Model& model);
+
+  /// The vertices that cluster `c` owns, as ascending ranges.
+  std::span<const VertexRange> owned(std::uint32_t c) const { return owned_.of(c); }
+  /// The clusters that own the corners of its triangles, itself among them where it owns any.
+  std::span<const std::uint32_t> owners(std::uint32_t c) const { return owners_.of(c); }
+  /// The clusters it shares a vertex with, itself included.
+  std::span<const std::uint32_t> around(std::uint32_t c) const { return around_.of(c); }
+
+ private:
+  /// One list per cluster, one after another.
+  template <class T>
+  struct Lists {
+    std::vector<std::uint32_t> first{0};
+    std::vector<T> items;
+
+    std::span<const T> of(std::uint32_t c) const {
+      return std::span(items).subspan(first[c], first[c + 1] - first[c]);
+    }
+    void end_list() { first.push_back(static_cast<std::uint32_t>(items.size())); }
+  };
+
+  Lists<VertexRange> owned_;
+  Lists<std::uint32_t> owners_, around_;
+};
 
 /// The pose of `model` at an interval: v0 + s (v1 - v0) of two decoded key poses, in float, per
 /// coordinate; the same bits whoever asks in whatever order. What was decoded of the last two keys
@@ -115,7 +146,7 @@ class PosedMesh {
 /// linearly moving vertices (docs/method.md, time between keys).
 Aabb cluster_world_box(const Model& model, std::uint32_t c, const KeyInterval& at);
 
-/// Boxes of all triangles in the present pose, in triangle order; `boxes` has one per triangle.
+/// Boxes of all triangles in the current pose, in triangle order; `boxes` has one per triangle.
 /// None is empty or infinite: a triangle with a corner that is not finite cannot be hit
 /// (docs/kernels.md), and gets a point. Runs in parallel.
 void triangle_boxes(const PosedMesh& mesh, std::span<Aabb> boxes);

@@ -11,13 +11,15 @@
 #include <span>
 #include <vector>
 
+#include "common/base/scratch.h"
 #include "common/math/affine3.h"
 #include "common/math/vec3.h"
 #include "common/motion/rig.h"
 
 namespace mdk {
 
-inline constexpr std::uint32_t kMostCoordinateBits = 16;
+inline constexpr std::uint32_t kMaxCoordinateBits = 16;
+inline constexpr std::uint32_t kMostCoordinateBits = kMaxCoordinateBits;  // renamed
 
 /// A run of vertices at a key. 72 bytes, as the file holds it.
 struct QuantizedBlock {
@@ -33,26 +35,42 @@ struct QuantizedBlock {
 /// How far decoded poses are from what was read, in units of the rest pose's diagonal.
 struct QuantizationError {
   double bound = 0;    ///< asked for
-  double largest = 0;  ///< met
+  double largest = 0;  ///< of all that were decoded
 };
 
-/// V vertices in R runs, F keys. `List<T>` is a span or a vector.
-template <template <class> class List>
+/// V vertices in R runs, F keys. `List<T>` is a span or a vector, `LargeList<T>` one that may stand
+/// in a file.
+template <template <class> class List, template <class> class LargeList = List>
 struct QuantizedLists {
   List<QuantizationError> error;     ///< one
   List<std::uint32_t> first_vertex;  ///< R + 1: run r has [first_vertex[r], first_vertex[r + 1])
   List<Vec3f> rest_positions;        ///< V: base, in the local basis of the vertex's run
   List<QuantizedBlock> blocks;       ///< F * R, key-major
-  List<std::uint32_t> words;         ///< coordinates one after another, and one word more
+  LargeList<std::uint32_t> words;    ///< coordinates one after another, and one word more
+
+  /// See RigLists.
+  template <class Visit, class... Poses>
+  static void for_each_array(Visit&& visit, Poses&... poses) {
+    using enum Count;
+    constexpr ModelPart kPart = ModelPart::kQuantized;
+    visit(array_row("QERR", "quantization_error", exactly(kOne), kPart), poses.error...);
+    visit(array_row("QRUN", "first_vertex", some(2), kPart), poses.first_vertex...);
+    visit(array_row("QRES", "rest_positions", exactly(kVertices), kPart), poses.rest_positions...);
+    visit(array_row("QBLK", "quantized_blocks", exactly(kKeys, kRuns), kPart), poses.blocks...);
+    visit(array_row("QBIT", "quantized_words", any(), kPart), poses.words...);
+  }
+
+  /// Valid while this lives and is not changed.
+  QuantizedLists<ConstSpan> view() const {
+    QuantizedLists<ConstSpan> poses;
+    for_each_array(kAssign, poses, *this);
+    return poses;
+  }
 };
 
 using QuantizedView = QuantizedLists<ConstSpan>;
-
-/// Quantised poses that own their lists.
-struct QuantizedPoses : QuantizedLists<OwnedList> {
-  /// Valid while this lives and is not changed.
-  QuantizedView view() const { return {error, first_vertex, rest_positions, blocks, words}; }
-};
+/// Quantised poses that own their arrays.
+using QuantizedPoses = QuantizedLists<OwnedList, ScratchList>;
 
 /// World positions of a range of vertices at a key; `out` has one per vertex of the range. Float,
 /// without fused multiply-adds: every machine gives the same bits. Cost: O(log R + range).

@@ -11,11 +11,6 @@ namespace mdk {
 namespace {
 
 template <class T>
-std::size_t bytes_of(const std::vector<T>& list) {
-  return list.size() * sizeof(T);
-}
-
-template <class T>
 std::span<const T> run_of(std::span<const T> items, std::span<const std::uint32_t> first,
                           std::size_t i) {
   return items.subspan(first[i], first[i + 1] - first[i]);
@@ -79,26 +74,31 @@ std::strong_ordering order_of(const RigView& rig, std::span<const std::uint64_t>
   return order_of(offsets_of(rig, a), offsets_of(rig, b));
 }
 
-/// Per bone the lowest one with the same maps at every key.
-std::vector<std::uint32_t> lowest_alike_bones(std::span<const Affine3f> maps, std::size_t bones) {
-  const std::size_t keys = bones == 0 ? 0 : maps.size() / bones;
-  const auto order = [&](std::uint32_t a, std::uint32_t b) {
-    for (std::size_t k = 0; k < keys; ++k)
-      if (const int c = std::memcmp(&maps[k * bones + a], &maps[k * bones + b], sizeof(Affine3f)))
-        return c;
-    return 0;
-  };
-  std::vector<std::uint32_t> sorted(bones), lowest(bones);
+/// Per item the lowest one that is alike. `order(a, b)`: 0 of items that are.
+template <class Order>
+std::vector<std::uint32_t> lowest_alike(std::size_t count, const Order& order) {
+  std::vector<std::uint32_t> sorted(count), lowest(count);
   std::iota(sorted.begin(), sorted.end(), 0u);
   std::ranges::sort(sorted, [&](std::uint32_t a, std::uint32_t b) {
-    const int c = order(a, b);
+    const auto c = order(a, b);
     return c != 0 ? c < 0 : a < b;
   });
-  for (std::size_t i = 0; i < bones; ++i) {
+  for (std::size_t i = 0; i < count; ++i) {
     const bool alike = i > 0 && order(sorted[i - 1], sorted[i]) == 0;
     lowest[sorted[i]] = alike ? lowest[sorted[i - 1]] : sorted[i];
   }
   return lowest;
+}
+
+/// Per bone the lowest one with the same maps at every key.
+std::vector<std::uint32_t> lowest_alike_bones(std::span<const Affine3f> maps, std::size_t bones) {
+  const std::size_t keys = bones == 0 ? 0 : maps.size() / bones;
+  return lowest_alike(bones, [&](std::uint32_t a, std::uint32_t b) {
+    for (std::size_t k = 0; k < keys; ++k)
+      if (const int c = std::memcmp(&maps[k * bones + a], &maps[k * bones + b], sizeof(Affine3f)))
+        return c;
+    return 0;
+  });
 }
 
 /// One weight per bone, in bone order, added to `out`.
@@ -193,17 +193,6 @@ void drop_idle_targets(Rig& rig, std::size_t targets, std::uint32_t keys) {
 
 }  // namespace
 
-RigView Rig::view() const {
-  return {base_positions, first_weight, bone_weights,  first_offset,
-          morph_offsets,  bone_maps,    target_weights};
-}
-
-std::size_t Rig::bytes() const {
-  return bytes_of(base_positions) + bytes_of(first_weight) + bytes_of(bone_weights) +
-         bytes_of(first_offset) + bytes_of(morph_offsets) + bytes_of(bone_maps) +
-         bytes_of(target_weights);
-}
-
 RigPose rig_pose(const RigView& rig, std::uint32_t key, std::uint32_t key_count) {
   const std::size_t bones = rig.bone_maps.size() / key_count;
   const std::size_t targets = rig.target_weights.size() / key_count;
@@ -254,17 +243,45 @@ std::vector<std::uint32_t> simplify_rig(Rig& rig, std::uint32_t key_count, Alike
 std::vector<std::uint32_t> lowest_alike_vertices(const Rig& rig,
                                                  std::span<const std::uint64_t> groups) {
   const RigView view = rig.view();
-  std::vector<std::uint32_t> sorted(rig.base_positions.size()), lowest(sorted.size());
-  std::iota(sorted.begin(), sorted.end(), 0u);
-  std::ranges::sort(sorted, [&](std::uint32_t a, std::uint32_t b) {
-    const auto order = order_of(view, groups, a, b);
-    return order != 0 ? order < 0 : a < b;
+  return lowest_alike(rig.base_positions.size(), [&](std::uint32_t a, std::uint32_t b) {
+    return order_of(view, groups, a, b);
   });
-  for (std::size_t i = 0; i < sorted.size(); ++i) {
-    const bool alike = i > 0 && order_of(view, groups, sorted[i - 1], sorted[i]) == 0;
-    lowest[sorted[i]] = alike ? lowest[sorted[i - 1]] : sorted[i];
+}
+
+Affine3d rotation(const Vec3d& turn) {
+  const double angle = length(turn);
+  if (!(angle > 0)) return {};
+  const Vec3d u = turn * (1 / angle);
+  const double c = std::cos(angle), s = std::sin(angle), t = 1 - c;
+  return {{{c + t * u.x * u.x, t * u.x * u.y - s * u.z, t * u.x * u.z + s * u.y, 0},
+           {t * u.x * u.y + s * u.z, c + t * u.y * u.y, t * u.y * u.z - s * u.x, 0},
+           {t * u.x * u.z - s * u.y, t * u.y * u.z + s * u.x, c + t * u.z * u.z, 0}}};
+}
+
+std::vector<Affine3d> world_from_joints(const SkeletonView& skeleton, const SkeletonPose& pose) {
+  std::vector<Affine3d> world(skeleton.joints.size());
+  for (std::size_t j = 0; j < world.size(); ++j) {
+    const Joint& joint = skeleton.joints[j];
+    const Affine3d local =
+        to_double(joint.parent_from_joint) * rotation(pose.turns[j]) * scaling(joint.scale);
+    world[j] = joint.parent == kNoParent ? local : world[joint.parent] * local;
   }
-  return lowest;
+  return world;
+}
+
+std::vector<Affine3f> bone_maps(const SkeletonView& skeleton, const SkeletonPose& pose) {
+  const std::vector<Affine3d> world = world_from_joints(skeleton, pose);
+  std::vector<Affine3f> maps;
+  maps.reserve(skeleton.bones.size());
+  for (const BoneBinding& bone : skeleton.bones)
+    maps.push_back(to_float(world[bone.joint] * to_double(bone.joint_from_base)));
+  return maps;
+}
+
+std::uint32_t joint_past_limit(const SkeletonView& skeleton, const SkeletonPose& pose) {
+  for (std::uint32_t j = 0; j < skeleton.joints.size(); ++j)
+    if (!(length(pose.turns[j]) <= skeleton.joints[j].limit)) return j;
+  return kNoParent;
 }
 
 }  // namespace mdk

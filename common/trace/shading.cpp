@@ -202,16 +202,16 @@ struct Shader::State {
       std::fill_n(triangle_cluster.begin() + cluster.first_triangle, cluster.triangle_count, c);
       cluster_colors.push_back(cluster_color(c));
     }
-    for (const Material& material : model.materials) {
+    for (const Material& material : model.appearance.materials) {
       const float* color = material.base_color;
       material_colors.push_back({color[0], color[1], color[2]});
       is_unlit_material.push_back((material.flags & kMaterialUnlit) != 0);
       has_unlit = has_unlit || is_unlit_material.back() != 0;
       has_textures = has_textures || material.texture != kNoTexture;
     }
-    has_textures = has_textures && !model.corner_texcoords.empty();
+    has_textures = has_textures && !model.appearance.corner_texcoords.empty();
     for (std::size_t t = 0; t < is_flat.size(); ++t) {
-      const Material& material = model.materials[model.triangle_materials[t]];
+      const Material& material = model.appearance.materials[model.appearance.triangle_materials[t]];
       is_flat[t] = (material.flags & kMaterialFlatShaded) != 0;
     }
   }
@@ -229,8 +229,8 @@ struct Shader::State {
       shaded.palette_index = heat.triangle_colors().data();
     } else {
       shaded.palette = material_colors.data();
-      shaded.palette_index = model.triangle_materials.data();
-      if (!model.corner_colors.empty()) shaded.corner_colors = model.corner_colors.data();
+      shaded.palette_index = model.appearance.triangle_materials.data();
+      if (!model.appearance.corner_colors.empty()) shaded.corner_colors = model.appearance.corner_colors.data();
     }
     return shaded;
   }
@@ -248,14 +248,14 @@ struct Shader::State {
     for (std::uint32_t i = 0; i < tile.rows * kTileSide; ++i) {
       const std::uint32_t triangle = tile.hits->triangle[i];
       if (triangle == kNoHit) continue;
-      const Material& material = model.materials[model.triangle_materials[triangle]];
+      const Material& material = model.appearance.materials[model.appearance.triangle_materials[triangle]];
       if (material.texture == kNoTexture) continue;
       const float bary[3] = {1 - s.bary1[i] - s.bary2[i], s.bary1[i], s.bary2[i]};
-      const auto* uv = &model.corner_texcoords[std::size_t{3} * triangle];
+      const auto* uv = &model.appearance.corner_texcoords[std::size_t{3} * triangle];
       const TexCoord at{uv[0].u * bary[0] + uv[1].u * bary[1] + uv[2].u * bary[2],
                         uv[0].v * bary[0] + uv[1].v * bary[1] + uv[2].v * bary[2]};
       const Vec3f texel =
-          sample_texture(model.textures[material.texture], model.texels, at, material);
+          sample_texture(model.appearance.textures[material.texture], model.appearance.texels, at, material);
       s.red[i] *= texel.x;
       s.green[i] *= texel.y;
       s.blue[i] *= texel.z;
@@ -276,7 +276,7 @@ struct Shader::State {
   }
 
   bool is_unlit(std::uint32_t triangle) const {
-    return triangle != kNoHit && is_unlit_material[model.triangle_materials[triangle]] != 0;
+    return triangle != kNoHit && is_unlit_material[model.appearance.triangle_materials[triangle]] != 0;
   }
 
   void show_normals(Tile& tile) const {

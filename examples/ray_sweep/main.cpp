@@ -7,7 +7,7 @@
 
 #include "common/base/error.h"
 #include "common/trace/ray_query.h"
-#include "formats/mdk_view.h"
+#include "formats/mdk/mdk_file.h"
 
 namespace {
 

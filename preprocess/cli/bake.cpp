@@ -19,7 +19,6 @@
 #include "preprocess/cli/number_text.h"
 #include "preprocess/cli/output_paths.h"
 #include "preprocess/cli/progress_bar.h"
-#include "preprocess/cli/scratch_memory.h"
 #include "preprocess/cli/source_reader.h"
 #include "preprocess/cli/text_file.h"
 #include "preprocess/cli/tool_version.h"
@@ -162,10 +161,10 @@ void require_memory(const BakeArguments& arguments, const PoseSequence& sequence
                   " is less; allow more, or bake fewer clips");
 }
 
-/// Blocks that a good part of the limit would go on.
-std::uint64_t smallest_scratch_block(const MemoryLimit& limit) {
-  constexpr std::uint64_t kShare = 16, kSmallest = std::uint64_t{16} << 20;
-  return limit.bytes() == 0 ? 0 : std::max(limit.bytes() / kShare, kSmallest);
+/// Lists that a good part of the limit would go on.
+std::uint64_t min_scratch_bytes(const MemoryLimit& limit) {
+  constexpr std::uint64_t kShare = 16, kMin = std::uint64_t{16} << 20;
+  return limit.bytes() == 0 ? 0 : std::max(limit.bytes() / kShare, kMin);
 }
 
 /// decompose, whose sentences on what it was given do not know where that came from.
@@ -187,8 +186,8 @@ void run_bake(const BakeArguments& arguments, CommandContext& context) {
   const Source source_files = find_source(arguments.inputs);
   keep_inputs(arguments, source_files.files.files);
   check_places(arguments);
-  const ScratchMemory scratch(std::filesystem::path(arguments.output).parent_path().string(),
-                              smallest_scratch_block(limits.memory()));
+  const ScratchFolder scratch(std::filesystem::path(arguments.output).parent_path().string(),
+                              min_scratch_bytes(limits.memory()));
   const DeferredInterrupts interrupts;
 
   BakeOutcome outcome{joined_inputs(arguments), arguments.output, {}, {}, 0, 0, 0};
@@ -197,6 +196,7 @@ void run_bake(const BakeArguments& arguments, CommandContext& context) {
   ProgressPart reading(progress, 0, ends.read);
   SourceOptions reading_options = arguments.source;
   reading_options.skeleton = options.sampling == PoseSampling::kPoseSpace;
+  reading_options.scratch = scratch;
   ReadResult source = read_source(source_files, reading_options, reading);
   keep_inputs(arguments, source.dependencies);
   outcome.read_through = source.read_through;
@@ -219,7 +219,7 @@ void run_bake(const BakeArguments& arguments, CommandContext& context) {
   outcome.seconds.write = stage.lap();
   outcome.seconds.total = total.seconds();
   outcome.peak_memory_bytes = peak_memory_bytes();
-  outcome.scratch_bytes = ScratchMemory::peak_bytes();
+  outcome.scratch_bytes = scratch.peak_bytes();
 
   context.inputs = source.dependencies;
   context.unread = source.unread;

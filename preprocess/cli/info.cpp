@@ -89,7 +89,7 @@ Json json_of_poses(const PoseSource& poses) {
 void print_json(const MdkFile& file, const InfoArguments& arguments) {
   const Model& model = file.model();
   Json textures = Json::array();
-  for (const Texture& texture : model.textures)
+  for (const Texture& texture : model.appearance.textures)
     textures.push_back({{"width", texture.width}, {"height", texture.height}});
   Json sections = Json::array();
   for (const MdkSectionInfo& section : file.sections())
@@ -116,7 +116,7 @@ void print_json(const MdkFile& file, const InfoArguments& arguments) {
       {"rest_key", model.rest_key},
       {"rest_diagonal", model.rest_diagonal},
       {"bounds", {{"lo", json_of(model.bounds.lo)}, {"hi", json_of(model.bounds.hi)}}},
-      {"materials", model.materials.size()},
+      {"materials", model.appearance.materials.size()},
       {"textures", textures},
       {"sections", sections},
   };
@@ -140,11 +140,11 @@ std::string point_text(const Vec3f& v) {
 }
 
 std::string textures_text(const Model& model) {
-  std::string text = std::to_string(model.textures.size());
-  for (const Texture& texture : model.textures)
+  std::string text = std::to_string(model.appearance.textures.size());
+  for (const Texture& texture : model.appearance.textures)
     text += (text.find(' ') == std::string::npos ? " (" : ", ") + std::to_string(texture.width) +
             "x" + std::to_string(texture.height);
-  return model.textures.empty() ? text : text + ")";
+  return model.appearance.textures.empty() ? text : text + ")";
 }
 
 std::string origin_text(const MdkOrigin& origin) {
@@ -185,7 +185,7 @@ void print_facts(const MdkFile& file, const InfoArguments& arguments) {
                                   fixed_text(model.key_times[model.rest_key], 3) +
                                   " s), diagonal " + fixed_text(model.rest_diagonal, 4)});
   facts.add_row({"bounds", point_text(model.bounds.lo) + " to " + point_text(model.bounds.hi)});
-  facts.add_row({"materials", std::to_string(model.materials.size())});
+  facts.add_row({"materials", std::to_string(model.appearance.materials.size())});
   facts.add_row({"textures", textures_text(model)});
   if (arguments.areas) {
     const BoxAreas areas = measure_box_areas(model);

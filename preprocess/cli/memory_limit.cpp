@@ -17,8 +17,7 @@
 namespace mdk {
 namespace {
 
-constexpr std::uint64_t kLeastRoom = std::uint64_t{16}
-                                     << 20;  // to start threads and say a sentence
+constexpr std::uint64_t kMinRoom = std::uint64_t{16} << 20;  // to start threads and say a sentence
 
 struct ProcessMemory {
   std::uint64_t program = 0;  ///< bytes: resident pages that files stand behind
@@ -51,12 +50,12 @@ MemoryLimit::MemoryLimit(const std::string& text) {
   if (text == "none") return;
   bytes_ = parse_size("--memory-limit", text);
   const auto [program, data] = process_memory();
-  if (bytes_ < program + kLeastRoom)
+  if (bytes_ < program + kMinRoom)
     throw Error(ErrorCode::kOverLimit, "--memory-limit " + text + ": the program itself needs " +
-                                           bytes_text(program + kLeastRoom) + "; allow more");
+                                           bytes_text(program + kMinRoom) + "; allow more");
   start_threads();
   const std::uint64_t started = std::max(data, process_memory().data);
-  const std::uint64_t stacks = started - data;  // hardly any of which is ever touched
+  const std::uint64_t stacks = started - data;  // hardly any of which is touched
   getrlimit(RLIMIT_DATA, &before_);
   const rlimit limit{std::min<rlim_t>(bytes_ - program + stacks, before_.rlim_max),
                      before_.rlim_max};

@@ -31,7 +31,7 @@ class MemoryLimit {
   rlimit before_ = {};
 };
 
-/// The most memory this process ever had resident.
+/// The largest amount of memory that this process had resident.
 std::uint64_t peak_memory_bytes();
 
 }  // namespace mdk

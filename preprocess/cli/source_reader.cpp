@@ -29,6 +29,7 @@ void add_source_options(CLI::App& command, SourceOptions& options) {
 ReadOptions parse_source_options(const SourceOptions& options) {
   ReadOptions parsed;
   parsed.skeleton = options.skeleton;
+  parsed.scratch = options.scratch;
   parsed.fps = parse_real("--fps", options.fps);
   if (!(parsed.fps > 0 && parsed.fps <= 10000))
     throw Error(ErrorCode::kUsage,

@@ -1,13 +1,7 @@
-// Long lists in files: what they hold, what they leave, and that a bake of more keys than its limit
-// allows gives the same bytes.
-#include "preprocess/cli/scratch_memory.h"
-
+// A bake of more keys than its limit of memory allows gives the same bytes.
 #include <gmock/gmock.h>
-#include <sys/resource.h>
 
 #include <cmath>
-#include <new>
-#include <numeric>
 #include <string>
 #include <vector>
 
@@ -17,59 +11,6 @@
 
 namespace mdk::test {
 namespace {
-
-using testing::IsEmpty;
-
-constexpr std::size_t kBlock = std::size_t{1} << 20;
-
-TEST(ScratchMemory, LargeListsStandInFilesThatHaveNoNameAndSmallOnesDoNot) {
-  const TempFolder folder;
-  std::vector<int> kept;
-  {
-    const ScratchMemory scratch(folder.path(), kBlock);
-    const std::uint64_t before = ScratchMemory::peak_bytes();
-    const std::vector<int> small(kBlock / sizeof(int) - 1);
-    EXPECT_EQ(ScratchMemory::peak_bytes(), before);
-    kept.resize(4 * kBlock / sizeof(int));
-    EXPECT_GE(ScratchMemory::peak_bytes(), before + 4 * kBlock);
-    EXPECT_THAT(folder.names(), IsEmpty());
-    std::iota(kept.begin(), kept.end(), 7);
-  }
-  for (std::size_t i = 0; i < kept.size(); ++i) ASSERT_EQ(kept[i], 7 + static_cast<int>(i));
-}
-
-/// Lets this process have no more private memory than it has now, and a little.
-class NoMoreMemory {
- public:
-  NoMoreMemory() {
-    ::getrlimit(RLIMIT_DATA, &old_);
-    const rlimit limit{8 * kBlock, old_.rlim_max};
-    ::setrlimit(RLIMIT_DATA, &limit);
-  }
-  ~NoMoreMemory() { ::setrlimit(RLIMIT_DATA, &old_); }
-  NoMoreMemory(const NoMoreMemory&) = delete;
-  NoMoreMemory& operator=(const NoMoreMemory&) = delete;
-
- private:
-  rlimit old_{};
-};
-
-TEST(ScratchMemory, TheyDoNotCountAsMemoryAndAFolderThatIsNotThereGivesNone) {
-  if (std::string(MDK_SANITIZE) != "") GTEST_SKIP() << "a sanitizer takes more than the limit";
-  const TempFolder folder;
-  const auto take = [](const std::string& place) {
-    const ScratchMemory scratch(place, kBlock);
-    const NoMoreMemory limit;
-    try {
-      const std::vector<char> large(64 * kBlock);
-      return true;
-    } catch (const std::bad_alloc&) {
-      return false;
-    }
-  };
-  EXPECT_TRUE(take(folder.path()));
-  EXPECT_FALSE(take(folder.file("nowhere")));
-}
 
 /// A grid that waves: more bytes of keys than the limit below.
 void write_wave(const TempFolder& folder, int side, std::uint32_t keys) {

@@ -1,4 +1,4 @@
-#include "common/motion/cluster_vertices.h"
+#include "common/motion/posed_mesh.h"
 
 #include <gtest/gtest.h>
 

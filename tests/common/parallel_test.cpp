@@ -96,5 +96,32 @@ TEST(Parallel, ThreadLimitHolds) {
   EXPECT_GE(thread_count(), 1);
 }
 
+TEST(Parallel, ALimitHoldsForTheLoopsOfItsThreadAndForNoOther) {
+  const int all = thread_count();
+  const ThreadLimit limit(1);
+  int elsewhere = 0;
+  std::thread([&] { elsewhere = thread_count(); }).join();
+  EXPECT_EQ(elsewhere, all);
+  EXPECT_EQ(thread_count(), 1);
+}
+
+TEST(Parallel, ALimitHoldsForLoopsWithinLoopsOnAnyThread) {
+  for (const int threads : {1, 2, 3}) {
+    const ThreadLimit limit(threads);
+    std::mutex mutex;
+    std::set<std::thread::id> seen;
+    std::atomic<int> wrong = 0;
+    parallel_chunks(64, 1, [&](std::size_t, std::size_t) {
+      parallel_chunks(16, 1, [&](std::size_t, std::size_t) {
+        wrong += thread_count() != threads ? 1 : 0;
+        const std::lock_guard lock(mutex);
+        seen.insert(std::this_thread::get_id());
+      });
+    });
+    EXPECT_EQ(wrong, 0);
+    EXPECT_LE(seen.size(), static_cast<std::size_t>(threads));
+  }
+}
+
 }  // namespace
 }  // namespace mdk

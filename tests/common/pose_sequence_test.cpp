@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "common/base/parallel.h"
-#include "common/motion/vertex_paths.h"
+#include "common/motion/pose_sequence.h"
 #include "tests/common/random_rig.h"
 
 namespace mdk {
@@ -27,7 +27,7 @@ PoseSequence two_keys(const std::vector<Vec3f>& from, const std::vector<Vec3f>& 
   s.triangles = triangles;
   s.clips = {{"clip", 0, 2}};
   s.key_times = {0, 1};
-  s.positions = from;
+  s.positions.assign(from.begin(), from.end());
   s.positions.insert(s.positions.end(), to.begin(), to.end());
   s.appearance.materials.push_back({});
   s.appearance.triangle_materials.assign(triangles.size(), 0);
@@ -144,31 +144,37 @@ TEST(CheckConsistency, NamesWhatDoesNotFit) {
   check_consistency(good);
   const std::vector<std::pair<std::string, std::function<void(PoseSequence&)>>> faults = {
       {"no clip", [](PoseSequence& s) { s.clips.clear(); }},
-      {"without keys",
+      {"clip 1 does not start where the last one ended, or is empty",
        [](PoseSequence& s) {
          s.clips.push_back({"x", 2, 0});
        }},
-      {"follow", [](PoseSequence& s) { s.clips[0].first_key = 1; }},
-      {"more keys", [](PoseSequence& s) { s.clips[0].key_count = 3; }},
-      {"outside its clips", [](PoseSequence& s) { s.clips[0].key_count = 1; }},
-      {"rise", [](PoseSequence& s) { s.key_times[1] = 0; }},
-      {"before zero", [](PoseSequence& s) { s.key_times[0] = -1; }},
+      {"clip 0 does not start where the last one ended",
+       [](PoseSequence& s) { s.clips[0].first_key = 1; }},
+      {"clip 0 reaches past the last key", [](PoseSequence& s) { s.clips[0].key_count = 3; }},
+      {"clips: they do not cover every key", [](PoseSequence& s) { s.clips[0].key_count = 1; }},
+      {"key_times: key 1", [](PoseSequence& s) { s.key_times[1] = 0; }},
+      {"key_times: key 0", [](PoseSequence& s) { s.key_times[0] = -1; }},
       {"position", [](PoseSequence& s) { s.positions.pop_back(); }},
-      {"vertex it does not have", [](PoseSequence& s) { s.triangles[4].v[2] = 10; }},
-      {"no material", [](PoseSequence& s) { s.appearance.materials.clear(); }},
-      {"each triangle", [](PoseSequence& s) { s.appearance.triangle_materials.pop_back(); }},
-      {"material it", [](PoseSequence& s) { s.appearance.triangle_materials[0] = 1; }},
-      {"coordinates", [](PoseSequence& s) { s.appearance.corner_texcoords.resize(14); }},
-      {"colours", [](PoseSequence& s) { s.appearance.corner_colors.resize(16); }},
-      {"texture it", [](PoseSequence& s) { s.appearance.materials[0].texture = 0; }},
-      {"outside its texels",
+      {"triangle 4 names vertex 10 of 10", [](PoseSequence& s) { s.triangles[4].v[2] = 10; }},
+      {"materials: 0", [](PoseSequence& s) { s.appearance.materials.clear(); }},
+      {"triangle_materials: 4 of them, not 5",
+       [](PoseSequence& s) { s.appearance.triangle_materials.pop_back(); }},
+      {"triangle 0 names material 1 of 1",
+       [](PoseSequence& s) { s.appearance.triangle_materials[0] = 1; }},
+      {"corner_texcoords: 14 of them, not 15",
+       [](PoseSequence& s) { s.appearance.corner_texcoords.resize(14); }},
+      {"corner_colors: 16 of them, not 15",
+       [](PoseSequence& s) { s.appearance.corner_colors.resize(16); }},
+      {"material 0 names texture 0 of 0",
+       [](PoseSequence& s) { s.appearance.materials[0].texture = 0; }},
+      {"texture 0 reaches past the last texel",
        [](PoseSequence& s) {
          s.appearance.textures.push_back({2, 2, 0});
        }},
   };
-  for (const auto& [words, spoil] : faults) {
+  for (const auto& [words, damage] : faults) {
     PoseSequence bad = good;
-    spoil(bad);
+    damage(bad);
     try {
       check_consistency(bad);
       ADD_FAILURE() << words;
@@ -207,7 +213,7 @@ TEST(WeldVertices, KeepsRigAndPositionsInStep) {
   weld_vertices(s, {});
   check_consistency(s);
   EXPECT_THAT(s.pose(2), ElementsAre(before[5], before[1], before[2], before[3]));
-  const std::vector<Vec3f> positions = s.positions;
+  const PositionList positions = s.positions;
   decode_positions(s);
   EXPECT_EQ(s.positions, positions);
 }

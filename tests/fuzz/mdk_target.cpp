@@ -3,11 +3,10 @@
 #include <string_view>
 
 #include "common/trace/renderer.h"
-#include "formats/mdk_view.h"
-#include "formats/mdk_writer.h"
-#include "tests/formats/mdk_image.h"
-#include "tests/formats/model_copy.h"
-#include "tests/formats/sample_model.h"
+#include "formats/mdk/mdk_file.h"
+#include "formats/mdk/writer.h"
+#include "tests/formats/mdk/mdk_image.h"
+#include "tests/formats/mdk/sample_model.h"
 #include "tests/fuzz/fuzz_target.h"
 
 namespace mdk::test {

@@ -115,7 +115,7 @@ TEST(QuantizedPoses, ARigThatTakesLessRoomStaysExact) {
 }
 
 TEST(QuantizedPoses, DoNotDependOnTheNumberOfThreads) {
-  std::vector<std::uint32_t> words[2];
+  ScratchList<std::uint32_t> words[2];
   for (int threads = 1; threads <= 2; ++threads) {
     const ThreadLimit limit(threads);
     words[threads - 1] = quantized(bending_parts(), kError).model.poses.quantized.words;

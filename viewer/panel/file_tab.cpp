@@ -27,7 +27,7 @@ void draw_facts(const Theme& theme, const ViewState& state) {
   fact("Clusters", grouped_text(model->cluster_count()));
   fact("Time segments", grouped_text(model->segment_count()));
   fact("Joints to pose", grouped_text(model->skeleton.joints.size()));
-  fact("Textures", grouped_text(model->textures.size()));
+  fact("Textures", grouped_text(model->appearance.textures.size()));
   fact("Size", bytes_text(state.file->file_bytes()));
 }
 

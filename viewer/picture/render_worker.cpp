@@ -34,7 +34,10 @@ bool outdates(const RenderJob& wanted, const RenderJob& old) {
 }
 
 RenderWorker::RenderWorker(std::function<void()> on_finished)
-    : on_finished_(std::move(on_finished)), thread_([this] { run(); }) {}
+    : on_finished_(std::move(on_finished)), thread_([this, threads = thread_count()] {
+        const ThreadLimit limit(threads);
+        run();
+      }) {}
 
 RenderWorker::~RenderWorker() {
   {

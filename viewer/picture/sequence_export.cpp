@@ -9,6 +9,7 @@
 #include <sstream>
 #include <utility>
 
+#include "common/base/parallel.h"
 #include "formats/atomic_file.h"
 #include "viewer/picture/render_command.h"
 
@@ -120,7 +121,10 @@ void SequenceExport::start(ExportOrder order) {
   cancelled_ = false;
   busy_ = true;
   progress_ = MdprepProgress{};
-  thread_ = std::thread([this, order = std::move(order)] { run(order); });
+  thread_ = std::thread([this, order = std::move(order), threads = thread_count()] {
+    const ThreadLimit limit(threads);
+    run(order);
+  });
 }
 
 void SequenceExport::cancel() {

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <utility>
 
+#include "common/base/parallel.h"
 #include "formats/file_kind.h"
 
 namespace mdk {
@@ -74,7 +75,10 @@ void SceneLoader::start(Reason reason) {
   stamps_ = stamps_of(paths_);
   cancelled_ = false;
   busy_ = true;
-  thread_ = std::thread([this, paths = paths_, reason] { run(paths, reason); });
+  thread_ = std::thread([this, paths = paths_, reason, threads = thread_count()] {
+    const ThreadLimit limit(threads);
+    run(paths, reason);
+  });
 }
 
 void SceneLoader::cancel() {
