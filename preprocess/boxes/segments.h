@@ -1,4 +1,4 @@
-// Time segments: extreme frames spoil the fuzzy boxes of all others, so the time line is cut into
+// Time segments: extreme keys widen the fuzzy boxes of all others, so the time line is cut into
 // stretches with boxes and trees of their own (GFW06 §6, future work). One segment is the paper;
 // one per interval between keys is a refit done ahead of time; this is the dial between them.
 //

@@ -1,9 +1,10 @@
-#include "preprocess/maps/box_fit.h"
-
+// One cluster's maps towards small boxes: least squares to a shape, and to the middles of the boxes
+// that gives, so that no single pose decides (docs/method.md, fit).
 #include <algorithm>
 #include <utility>
 
 #include "preprocess/maps/affine_fit.h"
+#include "preprocess/maps/cluster_maps.h"
 
 namespace mdk {
 namespace {
@@ -22,7 +23,7 @@ struct TargetSums {
 TargetSums target_sums(const PointTargets& targets, std::span<const float> weights) {
   TargetSums sums;
   for (const float w : weights) sums.weight += static_cast<double>(w);
-  const SecondMoments m = second_moments(targets.row(), weights.data(), weights.size());
+  const SecondMoments m = second_moments(targets.from(0), weights.data(), weights.size());
   for (int i = 0; i < 3; ++i) {
     sums.first[i] = m.first[i];
     sums.trace += m.second[i][i] - m.first[i] * m.first[i] / sums.weight;
@@ -101,7 +102,7 @@ PointFit fit_points(const ClusterPoints& points, std::span<const SecondMoments> 
   double weight = 0, square[3][3] = {};
   for (std::uint32_t row = 0; row < points.row_count; ++row) {
     double cross[3][3];
-    cross_moments(points.row(row), targets.row(), weights.data(), points.stride, cross);
+    cross_moments(points.row(row), targets.from(0), weights.data(), points.stride, cross);
     const FitMoments m = row_moments(moments[row], cross, target);
     const Affine3d map = fit_affine(m, kPointFit).target_from_source;
     fit.maps[row] = map;

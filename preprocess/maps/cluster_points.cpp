@@ -8,48 +8,52 @@ namespace {
 
 std::size_t padded(std::size_t n) { return (n + kSumLanes - 1) / kSumLanes * kSumLanes; }
 
-void resize(ClusterPoints& points, std::uint32_t rows, std::uint32_t vertices) {
+ClusterPoints empty_points(std::uint32_t rows, std::size_t vertices) {
+  ClusterPoints points;
   points.row_count = rows;
-  points.vertex_count = vertices;
+  points.vertex_count = static_cast<std::uint32_t>(vertices);
   points.stride = padded(vertices);
   points.centers.resize(rows);
-  for (std::vector<float>* a : {&points.x, &points.y, &points.z})
-    a->assign(rows * points.stride, 0.0f);
-  points.weights.assign(points.stride, 0.0f);
+  points.resize(rows * points.stride);
+  return points;
 }
 
-/// `position`: of a vertex in a row.
+/// `uses`: of each vertex; `position`: of a vertex in a row.
 template <class Position>
-ClusterPoints gathered(const ClusterMembers& members, std::uint32_t cluster, std::uint32_t rows,
-                       const Position& position) {
-  const std::uint32_t first = members.vertex_begin[cluster];
-  const std::uint32_t count = members.vertex_begin[cluster + 1] - first;
-  ClusterPoints points;
-  resize(points, rows, count);
+ClusterPoints centred(std::uint32_t rows, std::span<const std::uint32_t> uses,
+                      const Position& position) {
+  ClusterPoints points = empty_points(rows, uses.size());
+  points.weights.assign(points.stride, 0.0f);
   double weight = 0;
-  for (std::uint32_t i = 0; i < count; ++i) {
-    points.weights[i] = static_cast<float>(members.uses[first + i]);
-    weight += members.uses[first + i];
+  for (std::size_t i = 0; i < uses.size(); ++i) {
+    points.weights[i] = static_cast<float>(uses[i]);
+    weight += uses[i];
   }
-  std::vector<Vec3d> pose(count);
+  std::vector<Vec3d> pose(uses.size());
   for (std::uint32_t row = 0; row < rows; ++row) {
     Vec3d sum;
-    for (std::uint32_t i = 0; i < count; ++i) {
-      pose[i] = position(row, members.vertices[first + i]);
-      sum += pose[i] * static_cast<double>(members.uses[first + i]);
+    for (std::size_t i = 0; i < pose.size(); ++i) {
+      pose[i] = position(row, i);
+      sum += pose[i] * static_cast<double>(uses[i]);
     }
     points.centers[row] = sum * (1 / weight);
-    const std::size_t at = points.row_offset(row);
-    for (std::uint32_t i = 0; i < count; ++i) {
-      const Vec3f p = to_float(pose[i] - points.centers[row]);
-      points.x[at + i] = p.x;
-      points.y[at + i] = p.y;
-      points.z[at + i] = p.z;
-    }
+    for (std::size_t i = 0; i < pose.size(); ++i)
+      points.set(points.row_offset(row) + i, to_float(pose[i] - points.centers[row]));
   }
-  const std::span<const std::uint32_t> slots = members.corner_slots_of(cluster);
-  points.corners.reserve(slots.size());
-  for (const std::uint32_t s : slots) points.corners.push_back(s - first);
+  return points;
+}
+
+/// `position`: of a vertex of the mesh in a row.
+template <class Position>
+ClusterPoints centred_cluster(std::uint32_t rows, const ClusterMembers& members,
+                              std::uint32_t cluster, const Position& position) {
+  const std::span<const std::uint32_t> vertices = members.vertices_of(cluster);
+  const std::uint32_t first = members.vertex_begin[cluster];
+  ClusterPoints points =
+      centred(rows, std::span(members.uses).subspan(first, vertices.size()),
+              [&](std::uint32_t row, std::size_t i) { return position(row, vertices[i]); });
+  for (const std::uint32_t slot : members.corner_slots_of(cluster))
+    points.corners.push_back(slot - first);
   return points;
 }
 
@@ -68,16 +72,18 @@ std::vector<Affine3d> shifted(const ClusterPoints& points, std::span<const Affin
 
 ClusterPoints gather_points(const PoseTable& table, const ClusterMembers& members,
                             std::uint32_t cluster) {
-  return gathered(members, cluster, table.row_count(),
-                  [&](std::uint32_t row, std::uint32_t v) { return table.position(row, v); });
+  return centred_cluster(
+      table.row_count(), members, cluster,
+      [&](std::uint32_t row, std::uint32_t v) { return table.position(row, v); });
 }
 
 ClusterPoints gather_points(const PoseSequence& sequence, const ClusterMembers& members,
                             std::uint32_t cluster, double unit) {
   const double per_unit = 1 / unit;
-  return gathered(members, cluster, sequence.key_count(), [&](std::uint32_t key, std::uint32_t v) {
-    return to_double(sequence.positions[std::size_t{key} * sequence.vertex_count + v]) * per_unit;
-  });
+  return centred_cluster(sequence.key_count(), members, cluster,
+                         [&](std::uint32_t key, std::uint32_t v) {
+                           return to_double(sequence.pose(key)[v]) * per_unit;
+                         });
 }
 
 ClusterPoints gather_subset(const ClusterPoints& points, std::span<const std::uint32_t> triangles) {
@@ -95,36 +101,17 @@ ClusterPoints gather_subset(const ClusterPoints& points, std::span<const std::ui
       ++uses[slot[v]];
       corners.push_back(slot[v]);
     }
-  ClusterPoints subset;
-  resize(subset, points.row_count, static_cast<std::uint32_t>(vertices.size()));
+  ClusterPoints subset = centred(points.row_count, uses, [&](std::uint32_t row, std::size_t i) {
+    return points.point(points.row_offset(row) + vertices[i]);
+  });
+  for (std::uint32_t row = 0; row < points.row_count; ++row)
+    subset.centers[row] = points.centers[row] + subset.centers[row];
   subset.corners = std::move(corners);
-  double weight = 0;
-  for (std::size_t i = 0; i < vertices.size(); ++i) {
-    subset.weights[i] = static_cast<float>(uses[i]);
-    weight += uses[i];
-  }
-  for (std::uint32_t row = 0; row < points.row_count; ++row) {
-    const std::size_t from = points.row_offset(row), at = subset.row_offset(row);
-    Vec3d sum;
-    for (std::size_t i = 0; i < vertices.size(); ++i) {
-      const std::size_t j = from + vertices[i];
-      sum += Vec3d{points.x[j], points.y[j], points.z[j]} * static_cast<double>(uses[i]);
-    }
-    const Vec3d center = sum * (1 / weight);
-    subset.centers[row] = points.centers[row] + center;
-    for (std::size_t i = 0; i < vertices.size(); ++i) {
-      const std::size_t j = from + vertices[i];
-      subset.x[at + i] = static_cast<float>(points.x[j] - center.x);
-      subset.y[at + i] = static_cast<float>(points.y[j] - center.y);
-      subset.z[at + i] = static_cast<float>(points.z[j] - center.z);
-    }
-  }
   return subset;
 }
 
 ClusterPoints gather_rows(const ClusterPoints& points, std::span<const std::uint32_t> rows) {
-  ClusterPoints chosen;
-  resize(chosen, static_cast<std::uint32_t>(rows.size()), points.vertex_count);
+  ClusterPoints chosen = empty_points(static_cast<std::uint32_t>(rows.size()), points.vertex_count);
   chosen.weights = points.weights;
   chosen.corners = points.corners;
   for (std::uint32_t i = 0; i < chosen.row_count; ++i) {
@@ -138,41 +125,32 @@ ClusterPoints gather_rows(const ClusterPoints& points, std::span<const std::uint
 }
 
 PointTargets row_targets(const ClusterPoints& points, std::uint32_t row) {
-  const auto begin = static_cast<std::ptrdiff_t>(points.row_offset(row));
-  const auto end = begin + static_cast<std::ptrdiff_t>(points.stride);
-  return {{points.x.begin() + begin, points.x.begin() + end},
-          {points.y.begin() + begin, points.y.begin() + end},
-          {points.z.begin() + begin, points.z.begin() + end}};
+  return points.part(points.row_offset(row), points.stride);
 }
 
 std::vector<float> point_residuals(const ClusterPoints& points, std::span<const Affine3d> maps,
                                    const PointTargets& targets) {
   std::vector<float> residuals(points.stride, 0.0f);
   for (std::uint32_t row = 0; row < points.row_count; ++row)
-    add_squared_distances(to_float(maps[row]), points.row(row), targets.row(), points.stride,
+    add_squared_distances(to_float(maps[row]), points.row(row), targets.from(0), points.stride,
                           residuals.data());
   return residuals;
 }
 
 PointTargets PointBoxes::centers() const {
-  PointTargets result;
-  std::vector<float>* const arrays[3] = {&result.x, &result.y, &result.z};
-  for (int axis = 0; axis < 3; ++axis) {
-    arrays[axis]->resize(lo[axis].size());
-    for (std::size_t i = 0; i < lo[axis].size(); ++i)
-      (*arrays[axis])[i] = 0.5f * (lo[axis][i] + hi[axis][i]);
-  }
-  return result;
+  PointTargets middles;
+  middles.resize(lo[0].size());
+  for (std::size_t i = 0; i < lo[0].size(); ++i)
+    middles.set(i, {0.5f * (lo[0][i] + hi[0][i]), 0.5f * (lo[1][i] + hi[1][i]),
+                    0.5f * (lo[2][i] + hi[2][i])});
+  return middles;
 }
 
-Aabb PointBoxes::triangle(const std::uint32_t* corners) const {
-  Aabb box;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const float *l = lo[axis].data(), *h = hi[axis].data();
-    box.lo[axis] = std::min({l[corners[0]], l[corners[1]], l[corners[2]]});
-    box.hi[axis] = std::max({h[corners[0]], h[corners[1]], h[corners[2]]});
+void PointBoxes::reset(std::size_t count) {
+  for (int axis = 0; axis < 3; ++axis) {
+    lo[axis].assign(count, std::numeric_limits<float>::max());
+    hi[axis].assign(count, std::numeric_limits<float>::lowest());
   }
-  return box;
 }
 
 FaceSums face_sums(const ClusterPoints& points, const PointBoxes& boxes) {
@@ -186,17 +164,13 @@ std::vector<float> triangle_areas(const ClusterPoints& points, const PointBoxes&
                                   const AreaWeights& weights) {
   std::vector<float> areas(points.triangle_count());
   for (std::size_t t = 0; t < areas.size(); ++t)
-    areas[t] = static_cast<float>(
-        weights.area(to_double(boxes.triangle(&points.corners[3 * t]).extent())));
+    areas[t] = boxes.triangle_area(&points.corners[3 * t], weights);
   return areas;
 }
 
 PointBoxes mapped_boxes(const ClusterPoints& points, std::span<const Affine3d> maps) {
   PointBoxes boxes;
-  for (int axis = 0; axis < 3; ++axis) {
-    boxes.lo[axis].assign(points.stride, std::numeric_limits<float>::max());
-    boxes.hi[axis].assign(points.stride, std::numeric_limits<float>::lowest());
-  }
+  boxes.reset(points.stride);
   const BoxRow sides = boxes.row();
   for (std::uint32_t row = 0; row < points.row_count; ++row)
     extend_boxes(to_float(maps[row]), points.row(row), points.stride, sides);

@@ -2,6 +2,7 @@
 // without a gap: what maps are fitted to and boxes are measured on.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -19,28 +20,20 @@ namespace mdk {
 
 /// R rows (poses), n vertices. Each row is centred on its weighted mean, so that float holds it
 /// well.
-struct ClusterPoints {
+struct ClusterPoints : PointArrays {
   std::uint32_t row_count = 0, vertex_count = 0;
   std::size_t stride = 0;              ///< vertex_count rounded up to kSumLanes; the rest is zero
   std::vector<Vec3d> centers;          ///< R: table coordinates of each row's origin
-  std::vector<float> x, y, z;          ///< R * stride
   std::vector<float> weights;          ///< stride: corners that use the vertex, 0 past the end
   std::vector<std::uint32_t> corners;  ///< 3 per triangle: vertices 0..n-1
 
   std::size_t triangle_count() const { return corners.size() / 3; }
   std::size_t row_offset(std::uint32_t row) const { return row * stride; }
-  PointRow row(std::uint32_t row) const {
-    const std::size_t at = row_offset(row);
-    return {&x[at], &y[at], &z[at]};
-  }
+  PointRow row(std::uint32_t row) const { return from(row_offset(row)); }
 };
 
 /// Positions in a space that all rows are mapped into: n vertices each, padded like ClusterPoints.
-struct PointTargets {
-  std::vector<float> x, y, z;
-
-  PointRow row() const { return {x.data(), y.data(), z.data()}; }
-};
+using PointTargets = PointArrays;
 
 /// Cluster `cluster` of `members` in all rows of the table. Cost: O(rows * vertices).
 ClusterPoints gather_points(const PoseTable& table, const ClusterMembers& members,
@@ -75,8 +68,22 @@ struct PointBoxes {
   /// The middles.
   PointTargets centers() const;
 
+  /// All empty.
+  void reset(std::size_t count);
+
   /// Box of three vertices.
-  Aabb triangle(const std::uint32_t* corners) const;
+  Aabb triangle(const std::uint32_t* corners) const {
+    Aabb box;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const float *l = lo[axis].data(), *h = hi[axis].data();
+      box.lo[axis] = std::min(std::min(l[corners[0]], l[corners[1]]), l[corners[2]]);
+      box.hi[axis] = std::max(std::max(h[corners[0]], h[corners[1]]), h[corners[2]]);
+    }
+    return box;
+  }
+  float triangle_area(const std::uint32_t* corners, const AreaWeights& weights) const {
+    return static_cast<float>(weights.area(to_double(triangle(corners).extent())));
+  }
 };
 
 /// `maps`: R, from centred row coordinates. Cost: O(rows * vertices).

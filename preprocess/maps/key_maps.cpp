@@ -10,9 +10,7 @@
 #include "preprocess/boxes/cost.h"
 #include "preprocess/boxes/fuzzy_boxes.h"
 #include "preprocess/maps/affine_fit.h"
-#include "preprocess/maps/box_fit.h"
-#include "preprocess/maps/local_frame.h"
-#include "preprocess/maps/refinement.h"
+#include "preprocess/maps/cluster_maps.h"
 
 namespace mdk {
 namespace {

@@ -1,5 +1,7 @@
-#include "preprocess/maps/local_frame.h"
-
+// Local bases: a rotation per cluster that makes its triangles' fuzzy boxes small (GFW06 §3.4). Any
+// rotation can be folded into the maps; PCA of the fuzzy positions proposes, the summed world area
+// of the fuzzy boxes decides. The origin is the middle of the cluster, where numbers are small. A
+// finished cluster gets a better basis than its principal axes by a pattern search over rotations.
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cstddef>
@@ -8,6 +10,7 @@
 
 #include "common/base/parallel.h"
 #include "preprocess/maps/affine_fit.h"
+#include "preprocess/maps/cluster_maps.h"
 
 namespace mdk {
 namespace {

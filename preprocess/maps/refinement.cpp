@@ -1,5 +1,16 @@
-#include "preprocess/maps/refinement.h"
-
+// Refinement of a cluster's maps towards the smallest fuzzy boxes (GFW06 §4.1 notes that surface
+// area is the better measure, and minimises squared distances all the same).
+//
+// The cost of a cluster is 2 sum over sides of W S: S sums the products of the boxes' extents, W is
+// the mean over keys of what a local side is worth in the world (cost.h). Both are functions of the
+// maps alone. Extents are ranges over time, which are not smooth; they are replaced by a 16-norm
+// about the boxes' middles,
+//
+//     max over t of |x(t) - c|   <=   (sum over t of (x(t) - c)^16)^(1/16),
+//
+// which weighs the extreme keys and forgets the others. L-BFGS (Ceres) descends in the coordinates
+// in which every key's points have unit scatter, where all entries of a map count alike. It needs
+// sums and square roots alone, which are the same on every machine.
 #include <ceres/ceres.h>
 
 #include <Eigen/Dense>
@@ -7,6 +18,9 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <limits>
+
+#include "preprocess/maps/cluster_maps.h"
 
 namespace mdk {
 namespace {
@@ -29,35 +43,30 @@ float power15(float x) {
 struct WhitePoints {
   std::vector<Matrix> factor;   ///< R: x = factor w, lower triangular
   std::vector<Matrix> inverse;  ///< R
-  std::vector<float> axis[3];   ///< R * stride
+  PointArrays points;           ///< R * stride
 
-  explicit WhitePoints(const ClusterPoints& points) {
-    for (std::vector<float>& a : axis) a.resize(points.row_count * points.stride);
-    for (std::uint32_t row = 0; row < points.row_count; ++row) add_row(points, row);
-  }
-
-  PointRow row(const ClusterPoints& points, std::uint32_t row) const {
-    const std::size_t at = points.row_offset(row);
-    return {&axis[0][at], &axis[1][at], &axis[2][at]};
+  explicit WhitePoints(const ClusterPoints& source) {
+    points.resize(source.row_count * source.stride);
+    for (std::uint32_t row = 0; row < source.row_count; ++row) add_row(source, row);
   }
 
  private:
-  void add_row(const ClusterPoints& points, std::uint32_t row) {
-    const std::size_t at = points.row_offset(row);
+  void add_row(const ClusterPoints& source, std::uint32_t row) {
+    const std::size_t at = source.row_offset(row);
     Matrix scatter = Matrix::Zero();
-    for (std::size_t i = at; i < at + points.vertex_count; ++i) {
-      const Eigen::Vector3d p(points.x[i], points.y[i], points.z[i]);
+    for (std::size_t i = at; i < at + source.vertex_count; ++i) {
+      const Eigen::Vector3d p(source.x[i], source.y[i], source.z[i]);
       scatter += p * p.transpose();
     }
-    scatter /= std::max(1.0, static_cast<double>(points.vertex_count));
+    scatter /= std::max(1.0, static_cast<double>(source.vertex_count));
     const double ridge = 1e-3 * scatter.trace() + 1e-14;
     const Matrix lower = (scatter + ridge * Matrix::Identity()).llt().matrixL();
     factor.push_back(lower);
     inverse.push_back(lower.inverse());
     const Eigen::Matrix3f narrow = inverse.back().cast<float>();
-    for (std::size_t i = at; i < at + points.vertex_count; ++i) {
-      const Eigen::Vector3f w = narrow * Eigen::Vector3f(points.x[i], points.y[i], points.z[i]);
-      for (int k = 0; k < 3; ++k) axis[k][i] = w(k);
+    for (std::size_t i = at; i < at + source.vertex_count; ++i) {
+      const Eigen::Vector3f w = narrow * Eigen::Vector3f(source.x[i], source.y[i], source.z[i]);
+      points.set(i, {w(0), w(1), w(2)});
     }
   }
 };
@@ -194,8 +203,8 @@ class SmoothCost final : public ceres::FirstOrderFunction {
       for (std::size_t i = 0; i < n; ++i) per_scale[i] = 1 / scale_[k][i];
       std::vector<float>& sum = norms.axis[k];
       for (std::uint32_t row = 0; row < points_.row_count; ++row)
-        add_sixteenth_powers(coordinate(parameters, row, k, per_scale), white_.row(points_, row), n,
-                             sum.data());
+        add_sixteenth_powers(coordinate(parameters, row, k, per_scale),
+                             white_.points.from(points_.row_offset(row)), n, sum.data());
       for (std::size_t i = 0; i < n; ++i)
         sum[i] = std::sqrt(std::sqrt(std::sqrt(std::sqrt(sum[i]))));
     }
@@ -251,8 +260,8 @@ class SmoothCost final : public ceres::FirstOrderFunction {
     }
     for (std::uint32_t row = 0; row < points_.row_count; ++row) {
       double sum[4] = {};
-      add_pulls(coordinate(parameters, row, k, per_scale), white_.row(points_, row),
-                strength.data(), n, sum);
+      add_pulls(coordinate(parameters, row, k, per_scale),
+                white_.points.from(points_.row_offset(row)), strength.data(), n, sum);
       double* out = gradient + kParametersPerRow * row + 4 * k;
       for (int j = 0; j < 4; ++j) out[j] += sum[j];
     }

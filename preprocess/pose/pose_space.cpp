@@ -102,7 +102,7 @@ PoseSpace::PoseSpace(const SkeletonView& skeleton, const RigView& rig, std::uint
     : skeleton_(skeleton), rig_(rig) {
   const std::size_t targets = rig.target_weights.size() / key_count;
   min_weights_.assign(rig.target_weights.begin(),
-                        rig.target_weights.begin() + static_cast<std::ptrdiff_t>(targets));
+                      rig.target_weights.begin() + static_cast<std::ptrdiff_t>(targets));
   max_weights_ = min_weights_;
   for (std::size_t i = 0; i < rig.target_weights.size(); ++i) {
     float &least = min_weights_[i % targets], &largest = max_weights_[i % targets];

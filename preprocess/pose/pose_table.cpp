@@ -84,6 +84,14 @@ std::vector<float> mean_row(const PosePoints& points, std::size_t keys) {
 
 }  // namespace
 
+PointArrays PointArrays::part(std::size_t begin, std::size_t count) const {
+  const auto some = [&](const std::vector<float>& a) {
+    const auto first = a.begin() + static_cast<std::ptrdiff_t>(begin);
+    return std::vector<float>(first, first + static_cast<std::ptrdiff_t>(count));
+  };
+  return {some(x), some(y), some(z)};
+}
+
 Aabbd pose_box(std::span<const Vec3f> pose) {
   Aabbd box;
   for (const Vec3f& v : pose) box.extend(to_double(v));
@@ -159,10 +167,7 @@ PoseTable make_pose_table(const PoseSequence& sequence, std::span<const std::uin
   table.unit = unit;
   table.keys.assign(keys.begin(), keys.end());
   table.centers.resize(keys.size());
-  const std::size_t entries = keys.size() * static_cast<std::size_t>(sequence.vertex_count);
-  table.x.resize(entries);
-  table.y.resize(entries);
-  table.z.resize(entries);
+  table.resize(keys.size() * static_cast<std::size_t>(sequence.vertex_count));
 
   const double per_unit = 1 / unit;
   parallel_chunks(keys.size(), 4, [&](std::size_t begin, std::size_t end) {
@@ -171,13 +176,7 @@ PoseTable make_pose_table(const PoseSequence& sequence, std::span<const std::uin
       const Vec3d center = mean_position(pose);
       table.centers[row] = center;
       std::size_t at = table.row_offset(static_cast<std::uint32_t>(row));
-      for (const Vec3f& v : pose) {
-        const Vec3f p = to_float((to_double(v) - center) * per_unit);
-        table.x[at] = p.x;
-        table.y[at] = p.y;
-        table.z[at] = p.z;
-        ++at;
-      }
+      for (const Vec3f& v : pose) table.set(at++, to_float((to_double(v) - center) * per_unit));
     }
   });
   return table;
@@ -189,6 +188,18 @@ PoseTable sample_poses(const PoseSequence& sequence, std::size_t count,
   if (also && !std::binary_search(keys.begin(), keys.end(), *also))
     keys.insert(std::lower_bound(keys.begin(), keys.end(), *also), *also);
   return make_pose_table(sequence, keys, unit);
+}
+
+PointArrays gather_vertices(const PoseTable& table, std::span<const std::uint32_t> vertices) {
+  PointArrays gathered;
+  gathered.resize(vertices.size() * table.row_count());
+  std::size_t to = 0;
+  for (std::uint32_t row = 0; row < table.row_count(); ++row)
+    for (const std::uint32_t v : vertices) {
+      const std::size_t i = table.row_offset(row) + v;
+      gathered.set(to++, {table.x[i], table.y[i], table.z[i]});
+    }
+  return gathered;
 }
 
 std::uint32_t row_of_key(const PoseTable& table, std::uint32_t key) {

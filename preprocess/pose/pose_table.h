@@ -16,25 +16,42 @@
 #include "common/math/affine3.h"
 #include "common/math/vec3.h"
 #include "common/motion/pose_sequence.h"
+#include "common/trace/kernels/point_kernels.h"
 #include "preprocess/decomposition.h"
 
 namespace mdk {
 
+/// Points side by side, one array per coordinate, as the kernels take them.
+struct PointArrays {
+  std::vector<float> x, y, z;
+
+  void resize(std::size_t size) {
+    for (std::vector<float>* a : {&x, &y, &z}) a->resize(size, 0.0f);
+  }
+  void set(std::size_t i, const Vec3f& p) {
+    x[i] = p.x;
+    y[i] = p.y;
+    z[i] = p.z;
+  }
+  Vec3d point(std::size_t i) const { return {x[i], y[i], z[i]}; }
+  PointRow from(std::size_t i) const { return {x.data() + i, y.data() + i, z.data() + i}; }
+  /// Some of them.
+  PointArrays part(std::size_t begin, std::size_t count) const;
+};
+
 /// R rows (keys), V vertices. Entry (row, vertex) stands at row * V + vertex.
-struct PoseTable {
+struct PoseTable : PointArrays {
   std::uint32_t vertex_count = 0;
   double unit = 1;                  ///< world length of one table unit, a power of two
   std::vector<std::uint32_t> keys;  ///< R: the key each row shows
   std::vector<Vec3d> centers;       ///< R: world position of each row's origin
-  std::vector<float> x, y, z;       ///< R * V
 
   std::uint32_t row_count() const { return static_cast<std::uint32_t>(keys.size()); }
   std::size_t row_offset(std::uint32_t row) const {
     return static_cast<std::size_t>(row) * vertex_count;
   }
   Vec3d position(std::uint32_t row, std::uint32_t vertex) const {
-    const std::size_t i = row_offset(row) + vertex;
-    return {x[i], y[i], z[i]};
+    return point(row_offset(row) + vertex);
   }
 };
 
@@ -74,6 +91,9 @@ PoseTable make_pose_table(const PoseSequence& sequence, std::span<const std::uin
 /// A table of up to `count` sampled keys and of `also`.
 PoseTable sample_poses(const PoseSequence& sequence, std::size_t count,
                        std::optional<std::uint32_t> also, double unit);
+
+/// The chosen vertices of all rows, row by row.
+PointArrays gather_vertices(const PoseTable& table, std::span<const std::uint32_t> vertices);
 
 /// The row that shows `key`; there must be one.
 std::uint32_t row_of_key(const PoseTable& table, std::uint32_t key);

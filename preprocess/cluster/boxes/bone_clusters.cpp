@@ -1,5 +1,6 @@
-#include "preprocess/cluster/boxes/bone_clusters.h"
-
+// Bones as clusters (GFSS06; Lo09 §4.3): a cluster's basis is a bone's, A_c(t) = bone⁻¹(t), and a
+// triangle goes to the bone in whose basis its fuzzy box is smallest: all bones that move one of
+// its corners are tried. Parts that move rigidly are bones, too (common/motion/rig.h).
 #include <algorithm>
 #include <cstddef>
 #include <limits>
@@ -7,6 +8,7 @@
 
 #include "common/base/parallel.h"
 #include "preprocess/boxes/cost.h"
+#include "preprocess/cluster/clusters.h"
 #include "preprocess/cluster/common_moves.h"
 #include "preprocess/maps/key_maps.h"
 #include "preprocess/pose/pose_table.h"

@@ -44,58 +44,27 @@ class TriangleBlock {
           std::lower_bound(vertices.begin(), vertices.end(), corner) - vertices.begin());
     vertex_count_ = vertices.size();
     row_count_ = mesh.poses.row_count();
-    gather(mesh.poses.x, mesh.poses, vertices, x_);
-    gather(mesh.poses.y, mesh.poses, vertices, y_);
-    gather(mesh.poses.z, mesh.poses, vertices, z_);
-    for (int axis = 0; axis < 3; ++axis) {
-      lo_[axis].resize(vertex_count_);
-      hi_[axis].resize(vertex_count_);
-    }
+    points_ = gather_vertices(mesh.poses, vertices);
   }
 
   std::size_t size() const { return corners_.size() / 3; }
 
   /// Areas of the triangles' boxes over every `step`-th row.
   void measure(const CandidateMaps& candidate, std::uint32_t step, float* areas) {
-    for (int axis = 0; axis < 3; ++axis) {
-      std::fill(lo_[axis].begin(), lo_[axis].end(), std::numeric_limits<float>::max());
-      std::fill(hi_[axis].begin(), hi_[axis].end(), std::numeric_limits<float>::lowest());
-    }
-    const BoxRow sides{{lo_[0].data(), lo_[1].data(), lo_[2].data()},
-                       {hi_[0].data(), hi_[1].data(), hi_[2].data()}};
-    for (std::uint32_t row = 0; row < row_count_; row += step) {
-      const std::size_t at = row * vertex_count_;
-      extend_boxes(candidate.maps[row], {&x_[at], &y_[at], &z_[at]}, vertex_count_, sides);
-    }
-    for (std::size_t t = 0; t < size(); ++t) areas[t] = area(&corners_[3 * t], candidate.weights);
+    boxes_.reset(vertex_count_);
+    for (std::uint32_t row = 0; row < row_count_; row += step)
+      extend_boxes(candidate.maps[row], points_.from(row * vertex_count_), vertex_count_,
+                   boxes_.row());
+    for (std::size_t t = 0; t < size(); ++t)
+      areas[t] = boxes_.triangle_area(&corners_[3 * t], candidate.weights);
   }
 
  private:
-  void gather(const std::vector<float>& from, const PoseTable& table,
-              std::span<const std::uint32_t> vertices, std::vector<float>& to) {
-    to.resize(row_count_ * vertex_count_);
-    float* out = to.data();
-    for (std::uint32_t row = 0; row < row_count_; ++row) {
-      const float* in = &from[table.row_offset(row)];
-      for (const std::uint32_t v : vertices) *out++ = in[v];
-    }
-  }
-
-  float area(const std::uint32_t* v, const AreaWeights& weights) const {
-    float e[3];
-    for (int axis = 0; axis < 3; ++axis) {
-      const float *l = lo_[axis].data(), *h = hi_[axis].data();
-      e[axis] = std::max(std::max(h[v[0]], h[v[1]]), h[v[2]]) -
-                std::min(std::min(l[v[0]], l[v[1]]), l[v[2]]);
-    }
-    return static_cast<float>(weights.area({e[0], e[1], e[2]}));
-  }
-
   std::size_t vertex_count_ = 0;
   std::uint32_t row_count_ = 0;
   std::vector<std::uint32_t> corners_;  ///< 3 per triangle: numbers of gathered vertices
-  std::vector<float> x_, y_, z_;        ///< row-major
-  std::vector<float> lo_[3], hi_[3];
+  PointArrays points_;                  ///< row by row
+  PointBoxes boxes_;
 };
 
 /// The part of the answer that one block of triangles has.

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "preprocess/cluster/common_moves.h"
-#include "preprocess/maps/box_fit.h"
+#include "preprocess/maps/cluster_maps.h"
 #include "preprocess/pose/pose_table.h"
 
 namespace mdk {
@@ -55,10 +55,10 @@ std::vector<std::uint32_t> assign_to_smallest_boxes(const BoxProblem& problem,
 std::vector<ClusterOffer> find_splits(const BoxProblem& problem, const BoxClustering& clustering);
 
 /// `clustering` with the `count` best cuts made (fewer where there are none), fitted, not relaxed.
-/// Only cuts that gain more than `least_gain`.
+/// Only cuts that gain more than `min_gain`.
 BoxClustering make_splits(const BoxProblem& problem, const BoxClustering& clustering,
                           const std::vector<ClusterOffer>& splits, std::uint32_t count,
-                          double least_gain);
+                          double min_gain);
 
 /// Dissolves clusters whose triangles would cost less elsewhere, as long as the cost falls.
 BoxClustering dissolve_clusters(const BoxProblem& problem, BoxClustering clustering);

@@ -1,5 +1,5 @@
-#include "preprocess/cluster/boxes/box_growth.h"
-
+// How many clusters: from one, all clusters that pay are cut at once, relaxed, and those that no
+// longer pay are dissolved, until the cost stays.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "preprocess/cluster/boxes/box_clusters.h"
+#include "preprocess/cluster/clusters.h"
 #include "preprocess/pose/pose_table.h"
 #include "preprocess/pose/rest_pose.h"
 
@@ -66,12 +67,12 @@ BoxClustering filled_up(const BoxProblem& problem, BoxClustering clustering, std
   return clustering;
 }
 
-/// Clusters cut where that gains more than `least_gain`, relaxed.
+/// Clusters cut where that gains more than `min_gain`, relaxed.
 BoxClustering cut_and_relaxed(const BoxProblem& problem, const BoxClustering& clustering,
-                              const BoxGrowthPlan& plan, double least_gain) {
+                              const BoxGrowthPlan& plan, double min_gain) {
   const std::uint32_t room = plan.target() - std::min(plan.target(), clustering.cluster_count);
   BoxClustering next = make_splits(problem, clustering, find_splits(problem, clustering),
-                                   std::min(room, clustering.cluster_count), least_gain);
+                                   std::min(room, clustering.cluster_count), min_gain);
   if (next.cluster_count == clustering.cluster_count) return clustering;
   return relax_boxes(problem, std::move(next), plan.relax);
 }
@@ -172,12 +173,7 @@ ThinnedMesh thinned(const PoseTable& table, std::span<const Triangle> triangles,
   mesh.poses.unit = table.unit;
   mesh.poses.keys = table.keys;
   mesh.poses.centers = table.centers;
-  const std::vector<float>* const from[3] = {&table.x, &table.y, &table.z};
-  std::vector<float>* const to[3] = {&mesh.poses.x, &mesh.poses.y, &mesh.poses.z};
-  for (int axis = 0; axis < 3; ++axis)
-    for (std::uint32_t row = 0; row < table.row_count(); ++row)
-      for (const std::uint32_t v : vertices)
-        to[axis]->push_back((*from[axis])[table.row_offset(row) + v]);
+  static_cast<PointArrays&>(mesh.poses) = gather_vertices(table, vertices);
   return mesh;
 }
 

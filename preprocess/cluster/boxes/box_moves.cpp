@@ -244,10 +244,10 @@ std::vector<ClusterOffer> find_splits(const BoxProblem& problem, const BoxCluste
 
 BoxClustering make_splits(const BoxProblem& problem, const BoxClustering& clustering,
                           const std::vector<ClusterOffer>& splits, std::uint32_t count,
-                          double least_gain) {
+                          double min_gain) {
   std::vector<std::size_t> order;
   for (std::size_t i = 0; i < splits.size(); ++i)
-    if (!splits[i].triangles.empty() && splits[i].gain > least_gain) order.push_back(i);
+    if (!splits[i].triangles.empty() && splits[i].gain > min_gain) order.push_back(i);
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t a, std::size_t b) { return splits[a].gain > splits[b].gain; });
   if (order.size() > count) order.resize(count);

@@ -1,13 +1,14 @@
-#include "preprocess/cluster/paper/paper_growth.h"
-
+// Algorithm 1 of GFW06: start with one cluster, relax, add a cluster where motion is worst, and go
+// on until another one gains too little.
 #include <algorithm>
 #include <bit>
 #include <cstddef>
 #include <utility>
 
 #include "preprocess/boxes/cost.h"
+#include "preprocess/cluster/clusters.h"
 #include "preprocess/cluster/paper/residual_clusters.h"
-#include "preprocess/maps/local_frame.h"
+#include "preprocess/maps/cluster_maps.h"
 #include "preprocess/pose/rest_pose.h"
 
 namespace mdk {
@@ -66,7 +67,7 @@ Growth grow_by_residuals(const MovingMesh& moving, const ClusterRequest& request
   const ConnectedMesh mesh(moving);
   const bool is_counted = request.clusters != 0;
   const std::uint32_t target = is_counted ? request.clusters : kMaxGrown;
-  const double least_gain = request.stop_percent.value_or(0) / 100;
+  const double min_gain = request.stop_percent.value_or(0) / 100;
   Growth growth;
   ResidualClustering state =
       fit_residuals(mesh, request.rest_key ? row_of_key(mesh.poses, *request.rest_key) : 0,
@@ -75,9 +76,8 @@ Growth grow_by_residuals(const MovingMesh& moving, const ClusterRequest& request
     if (!request.rest_key && std::has_single_bit(state.cluster_count))
       state = with_papers_rest_pose(mesh, std::move(state));
     const GrowthStep step = describe(mesh, state);
-    const bool gains_little =
-        !is_counted && !growth.steps.empty() &&
-        step.residual_rms > growth.steps.back().residual_rms * (1 - least_gain);
+    const bool gains_little = !is_counted && !growth.steps.empty() &&
+                              step.residual_rms > growth.steps.back().residual_rms * (1 - min_gain);
     growth.steps.push_back(step);
     on_step(step);
     if (gains_little) {  // without this last cluster

@@ -219,7 +219,7 @@ std::optional<double> cost_of(const RunCosts& costs, std::uint32_t cuts, double 
 }
 
 /// The least cost of all partitions, or of those into `count` runs.
-double least_cost(const RunCosts& costs, double price, std::optional<std::uint32_t> count) {
+double min_cost(const RunCosts& costs, double price, std::optional<std::uint32_t> count) {
   double least = kInf;
   for (std::uint32_t cuts = 0; cuts < 1u << (costs.blocks - 1); ++cuts) {
     if (count && static_cast<std::uint32_t>(std::popcount(cuts)) + 1 != *count) continue;
@@ -246,7 +246,7 @@ TEST(Partition, IsTheBestOfAllThereAre) {
       const auto runs = cheapest_runs(costs, price);
       ASSERT_EQ(runs.front(), 0u);
       EXPECT_NEAR(cost_of(costs, cuts_of(runs), price).value_or(kInf),
-                  least_cost(costs, price, std::nullopt), 1e-12);
+                  min_cost(costs, price, std::nullopt), 1e-12);
     }
   }
 }
@@ -262,7 +262,7 @@ TEST(Partition, IntoAGivenNumberIsTheBestOfThose) {
       const auto runs = cheapest_runs_of_count(costs, count);
       ASSERT_EQ(runs.size(), count);
       ASSERT_EQ(runs.front(), 0u);
-      EXPECT_NEAR(cost_of(costs, cuts_of(runs), 0).value_or(kInf), least_cost(costs, 0, count),
+      EXPECT_NEAR(cost_of(costs, cuts_of(runs), 0).value_or(kInf), min_cost(costs, 0, count),
                   1e-12);
     }
   }

@@ -1,6 +1,4 @@
 // --decompose bones: clusters from a rig, and pose spaces that hold for poses no clip contains.
-#include "preprocess/cluster/boxes/bone_clusters.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -12,6 +10,7 @@
 #include "common/motion/posed_mesh.h"
 #include "common/trace/renderer.h"
 #include "preprocess/boxes/cost.h"
+#include "preprocess/cluster/clusters.h"
 #include "preprocess/maps/key_maps.h"
 #include "preprocess/pipeline.h"
 #include "tests/preprocess/moving_meshes.h"

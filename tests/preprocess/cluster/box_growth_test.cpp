@@ -1,10 +1,9 @@
 // Clusters by the cost of their boxes, on meshes small and large.
-#include "preprocess/cluster/boxes/box_growth.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
+#include "preprocess/cluster/clusters.h"
 #include "preprocess/pose/pose_table.h"
 #include "tests/preprocess/moving_meshes.h"
 

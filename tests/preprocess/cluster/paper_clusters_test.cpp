@@ -4,7 +4,6 @@
 #include <map>
 #include <set>
 
-#include "preprocess/cluster/paper/paper_growth.h"
 #include "preprocess/cluster/paper/residual_clusters.h"
 #include "tests/preprocess/moving_meshes.h"
 #include "tests/preprocess/whole_sequence.h"

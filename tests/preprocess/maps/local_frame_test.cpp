@@ -1,5 +1,3 @@
-#include "preprocess/maps/local_frame.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -7,6 +5,7 @@
 #include <vector>
 
 #include "preprocess/maps/affine_fit.h"
+#include "preprocess/maps/cluster_maps.h"
 #include "tests/preprocess/moving_meshes.h"
 #include "tests/preprocess/whole_sequence.h"
 

@@ -1,14 +1,20 @@
-// One cluster's maps towards small boxes: least squares to a shape, and to the middles of the boxes
-// that gives, so that no single pose decides (docs/method.md, fit).
+// The maps of one cluster: fitted towards small boxes, put into a basis in which the boxes are
+// small, refined.
 #pragma once
 
 #include <cstdint>
 #include <span>
 #include <vector>
 
+#include "common/math/affine3.h"
+#include "preprocess/boxes/cost.h"
+#include "preprocess/decomposition.h"
 #include "preprocess/maps/cluster_points.h"
+#include "preprocess/pose/pose_table.h"
 
 namespace mdk {
+
+// box_fit.cpp
 
 /// Least-squares maps of all rows onto the targets.
 struct PointFit {
@@ -46,5 +52,36 @@ struct BoxCluster {
 /// that gives, each in the axes as they are and in the principal ones; what is cheapest stays.
 /// Cost: O(rows * vertices).
 BoxCluster fit_box_cluster(const BoxMeasure& measure, const ClusterPoints& points);
+
+// local_frame.cpp
+
+struct LocalFrames {
+  std::vector<Affine3d> local_from_rest;  ///< K: rigid, in table coordinates
+  std::vector<ClusterWork> clusters;      ///< K: the cost's view of the clusters in these bases
+};
+
+/// Chooses between the axes as they are and the principal axes of the fuzzy positions. `maps`: K *
+/// R, cluster-major, row's pose to rest pose, in table coordinates. Cost: O(rows * vertices).
+LocalFrames choose_local_frames(const PoseTable& table, const ClusterMembers& members,
+                                std::span<const Affine3d> maps);
+
+/// Fuzzy boxes of a cluster under some maps: summed mean area in units of the model's.
+/// `maps`: R, from centred row coordinates; `model_areas`: R. Cost: O(rows * vertices).
+double fuzzy_area(const ClusterPoints& points, std::span<const Affine3d> maps,
+                  std::span<const double> model_areas);
+
+/// The maps, followed by the rotation that makes the boxes smallest; as they are where none was
+/// found. Searched on up to 32 rows, judged on all. Cost: O(32 * vertices), some fifty times.
+std::vector<Affine3d> turned_to_small_boxes(const ClusterPoints& points,
+                                            std::span<const Affine3d> maps,
+                                            std::span<const double> model_areas);
+
+// refinement.cpp
+
+/// `maps`: R, from centred row coordinates into the local basis; `model_areas`: R. Returns maps
+/// that lower the smooth cost; the caller must ask the true one. Cost: O(rows * vertices) an
+/// iteration.
+std::vector<Affine3d> refine_maps(const ClusterPoints& points, std::span<const Affine3d> maps,
+                                  std::span<const double> model_areas);
 
 }  // namespace mdk
