@@ -304,7 +304,7 @@ TEST(Decompose, AppearanceFollowsItsTriangles) {
 
 TEST(Decompose, StepsStartWithOneClusterAndEndWithWhatThereIs) {
   const DecomposeResult result = run(independent_parts(6, 12));
-  const std::vector<ClusteringStep>& steps = result.stats.steps;
+  const std::vector<GrowthStep>& steps = result.stats.steps;
   ASSERT_GE(steps.size(), 3u);
   EXPECT_EQ(steps.front().clusters, 1u);
   EXPECT_EQ(steps.back().clusters, result.model.clusters.size());
@@ -313,7 +313,7 @@ TEST(Decompose, StepsStartWithOneClusterAndEndWithWhatThereIs) {
     EXPECT_LT(steps[i].sah_cost, steps[i - 1].sah_cost);
     EXPECT_LT(steps[i].fuzzy_area, steps[i - 1].fuzzy_area);
   }
-  for (const ClusteringStep& step : steps) EXPECT_LT(step.fuzzy_area, step.sah_cost);
+  for (const GrowthStep& step : steps) EXPECT_LT(step.fuzzy_area, step.sah_cost);
   EXPECT_LT(steps.back().residual_rms, 0.01 * steps.front().residual_rms);
 }
 

@@ -7,11 +7,11 @@
 #include <string>
 #include <vector>
 
-#include "preprocess/cost.h"
-#include "preprocess/fuzzy_boxes.h"
+#include "preprocess/boxes/cost.h"
 #include "preprocess/pipeline.h"
 #include "tests/preprocess/moving_meshes.h"
 #include "tests/preprocess/sample_sequences.h"
+#include "tests/preprocess/whole_sequence.h"
 
 namespace mdk {
 namespace {
@@ -37,23 +37,6 @@ double median_area_ratio(const ModelStorage& model, std::span<const Aabb> boxes)
   std::nth_element(ratios.begin(), ratios.begin() + static_cast<std::ptrdiff_t>(keys / 2),
                    ratios.end());
   return ratios[keys / 2];
-}
-
-std::vector<Aabb> boxes_over_keys_only(const ModelStorage& model) {
-  PoseSequence sequence;
-  sequence.vertex_count = model.vertex_count;
-  sequence.triangles = model.triangles;
-  sequence.clips = model.clips;
-  sequence.key_times = model.key_times;
-  sequence.positions = model.poses.key_positions;
-  std::vector<std::uint32_t> cluster_of_triangle;
-  for (std::uint32_t c = 0; c < model.clusters.size(); ++c)
-    cluster_of_triangle.resize(cluster_of_triangle.size() + model.clusters[c].triangle_count, c);
-  return fuzzy_boxes(
-      sequence,
-      make_cluster_members(model.triangles, cluster_of_triangle,
-                           static_cast<std::uint32_t>(model.clusters.size()), model.vertex_count),
-      model.local_from_world, model.segments[0], BetweenKeys::kIgnore);
 }
 
 struct Target {
@@ -91,7 +74,7 @@ TEST_P(RealMotion, ByDefaultLeavesHalfTheAreaOfAPlainImplementationOrLess) {
   const double area = median_area_ratio(result.model, first_fuzzy_boxes(result.model));
   std::printf("%s: %zu clusters, W %.2f at all times, cost %.2f\n", GetParam().name,
               result.model.clusters.size(), area, result.stats.sah_cost);
-  // The horse is nearly as good as can be with 20 clusters: its present triangles' boxes have 3.0.
+  // The horse is nearly as good as can be with 20 clusters: its current triangles' boxes have 3.0.
   const double share = GetParam().name == std::string("horse_gallop") ? 0.75 : 0.5;
   EXPECT_LE(area, share * GetParam().area_at_keys);
 }

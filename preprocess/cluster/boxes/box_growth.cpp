@@ -1,0 +1,264 @@
+// How many clusters: from one, all clusters that pay are cut at once, relaxed, and those that no
+// longer pay are dissolved, until the cost stays.
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "preprocess/cluster/boxes/box_clusters.h"
+#include "preprocess/cluster/clusters.h"
+#include "preprocess/pose/pose_table.h"
+#include "preprocess/pose/rest_pose.h"
+
+namespace mdk {
+namespace {
+
+// Clusters are grown on few keys, and on few triangles of a large mesh, as long as they are few;
+// then on all triangles and as many keys as a budget of entries (keys times vertices) allows.
+constexpr std::uint32_t kRoughKeys = 32, kRoughClusters = 32;
+constexpr std::size_t kWholeTriangles = 24'000;  // larger meshes are thinned to...
+constexpr std::size_t kThinTriangles = 6'000;    // ...so many, which rarely share vertices
+constexpr std::size_t kFineEntries = 400'000, kMinFineKeys = 16;
+constexpr std::size_t kRestCandidates = 2;
+
+constexpr std::uint32_t kMaxGrown = 80;    // clusters, where none are requested
+constexpr double kMinCutGain = -0.1;       // a cut may cost a little: relaxation pays it back
+constexpr double kMinStageGain = 0.005;    // share of the cost that a stage must save to go on
+constexpr int kLeaps = 3;                  // stages that may raise the cost before growth gives up
+constexpr std::uint32_t kFewClusters = 8;  // with more, a stage that saves nothing is the last
+constexpr RelaxLimits kPolish = {.min_gain = 0.0005, .max_rounds = 4};
+constexpr std::uint32_t kPolishShare = 10;  // at most one cluster in so many is cut at a time
+
+/// How far clusters grow, and with how much care.
+struct BoxGrowthPlan {
+  std::uint32_t clusters = 0;       ///< exactly so many; 0: as many as pay
+  std::uint32_t limit = kMaxGrown;  ///< without an exact count
+  RelaxLimits relax{.min_gain = 0.005, .max_rounds = 3};
+  int polish_rounds = 0;  ///< of careful cuts at the end, where growth ended because of the cost
+
+  std::uint32_t target() const { return clusters != 0 ? clusters : limit; }
+};
+
+GrowthStep describe(const BoxProblem& problem, const BoxClustering& clustering) {
+  double residual = 0, area = 0;
+  for (const BoxCluster& c : clustering.clusters) {
+    residual += c.residual;
+    area += c.work.area();
+  }
+  const double terms =
+      3.0 * static_cast<double>(problem.mesh.triangles.size()) * problem.mesh.poses.row_count();
+  return {clustering.cluster_count, std::sqrt(residual / terms), clustering.cost, area};
+}
+
+/// Exactly `count` clusters, whether motion asks for them or not.
+BoxClustering filled_up(const BoxProblem& problem, BoxClustering clustering, std::uint32_t count) {
+  while (clustering.cluster_count < count) {
+    const std::uint32_t missing = count - clustering.cluster_count;
+    BoxClustering next = make_splits(problem, clustering, find_splits(problem, clustering),
+                                     std::min(missing, clustering.cluster_count),
+                                     -std::numeric_limits<double>::infinity());
+    if (next.cluster_count == clustering.cluster_count)
+      next = fit_boxes(problem, halve_largest(problem.mesh, problem.measure.rest_row, clustering));
+    clustering = std::move(next);
+  }
+  return clustering;
+}
+
+/// Clusters cut where that gains more than `min_gain`, relaxed.
+BoxClustering cut_and_relaxed(const BoxProblem& problem, const BoxClustering& clustering,
+                              const BoxGrowthPlan& plan, double min_gain) {
+  const std::uint32_t room = plan.target() - std::min(plan.target(), clustering.cluster_count);
+  BoxClustering next = make_splits(problem, clustering, find_splits(problem, clustering),
+                                   std::min(room, clustering.cluster_count), min_gain);
+  if (next.cluster_count == clustering.cluster_count) return clustering;
+  return relax_boxes(problem, std::move(next), plan.relax);
+}
+
+/// One stage: cut, relax, dissolve what no longer pays. Where no cut pays by itself, several
+/// together may: while clusters are few, all clusters are then cut, some times over, before the
+/// result is judged.
+BoxClustering next_stage(const BoxProblem& problem, const BoxClustering& clustering,
+                         const BoxGrowthPlan& plan) {
+  BoxClustering next = cut_and_relaxed(problem, clustering, plan, kMinCutGain);
+  const int leaps = clustering.cluster_count <= kFewClusters ? kLeaps : 0;
+  for (int leap = 0; leap < leaps && !(next.cost < clustering.cost); ++leap)
+    next = cut_and_relaxed(problem, next, plan, -std::numeric_limits<double>::infinity());
+  const std::uint32_t before = next.cluster_count;
+  if (before == clustering.cluster_count) return clustering;
+  next = dissolve_clusters(problem, std::move(next));
+  if (next.cluster_count < before) next = relax_boxes(problem, std::move(next), plan.relax);
+  return next;
+}
+
+/// One careful round: relaxed to rest, rid of what does not pay, and cut in a few places, which
+/// stays only where it has paid after all moved.
+BoxClustering polished(const BoxProblem& problem, const BoxClustering& clustering,
+                       const BoxGrowthPlan& plan) {
+  BoxClustering next = dissolve_clusters(problem, relax_boxes(problem, clustering, kPolish));
+  const std::uint32_t count = next.cluster_count;
+  const std::uint32_t room = plan.limit - std::min(plan.limit, count);
+  BoxClustering cut = make_splits(problem, next, find_splits(problem, next),
+                                  std::min(room, count / kPolishShare + 1), 0);
+  if (cut.cluster_count == count) return next;
+  cut = relax_boxes(problem, std::move(cut), kPolish);
+  return cut.cost < next.cost ? cut : next;
+}
+
+/// `start`: a cluster per triangle. `on_step` is called with the start and after each stage.
+Growth grow_boxes(const BoxProblem& problem, std::vector<std::uint32_t> start,
+                  const BoxGrowthPlan& plan, const OnGrowthStep& on_step) {
+  Growth growth;
+  growth.stop_reason = StopReason::kCost;
+  growth.rest_key = problem.mesh.poses.keys[problem.measure.rest_row];
+  BoxClustering state = fit_boxes(problem, std::move(start));
+  const auto record = [&] {
+    growth.steps.push_back(describe(problem, state));
+    on_step(growth.steps.back());
+  };
+  record();
+  const auto advance = [&](BoxClustering next) {  // whether it pays to go on
+    const double gain = state.cost - next.cost;
+    if (!(gain > 0)) return false;
+    const bool is_last = gain < kMinStageGain * state.cost;
+    state = std::move(next);
+    record();
+    return !is_last;
+  };
+  const bool is_free = plan.clusters == 0;
+  while (state.cluster_count < plan.target() && advance(next_stage(problem, state, plan))) {
+  }
+  const int rounds = is_free ? plan.polish_rounds : 0;
+  for (int round = 0; round < rounds && state.cluster_count < plan.target(); ++round)
+    if (!advance(polished(problem, state, plan))) break;
+  if (!is_free) {
+    growth.stop_reason = StopReason::kCount;
+    if (state.cluster_count < plan.target()) {
+      state = filled_up(problem, std::move(state), plan.target());
+      record();
+    }
+  } else if (state.cluster_count >= plan.target()) {
+    growth.stop_reason = StopReason::kLimit;
+  }
+  static_cast<Assignment&>(growth) = std::move(state);
+  return growth;
+}
+
+/// Every n-th triangle of a mesh with the vertices they use.
+struct ThinnedMesh {
+  PoseTable poses;
+  std::vector<Triangle> triangles;
+  std::vector<std::uint32_t> sources;  ///< per triangle, its number in the whole mesh
+};
+
+ThinnedMesh thinned(const PoseTable& table, std::span<const Triangle> triangles, std::size_t step) {
+  constexpr std::uint32_t kUnused = std::numeric_limits<std::uint32_t>::max();
+  ThinnedMesh mesh;
+  std::vector<std::uint32_t> number(table.vertex_count, kUnused), vertices;
+  for (std::size_t t = 0; t < triangles.size(); t += step) {
+    Triangle triangle = triangles[t];
+    for (std::uint32_t& v : triangle.v) {
+      if (number[v] == kUnused) {
+        number[v] = static_cast<std::uint32_t>(vertices.size());
+        vertices.push_back(v);
+      }
+      v = number[v];
+    }
+    mesh.triangles.push_back(triangle);
+    mesh.sources.push_back(static_cast<std::uint32_t>(t));
+  }
+  mesh.poses.vertex_count = static_cast<std::uint32_t>(vertices.size());
+  mesh.poses.unit = table.unit;
+  mesh.poses.keys = table.keys;
+  mesh.poses.centers = table.centers;
+  static_cast<PointArrays&>(mesh.poses) = gather_vertices(table, vertices);
+  return mesh;
+}
+
+/// The best of the most promising rest rows by cost; the clustering is fitted to it.
+BoxClustering with_best_rest_row(BoxProblem& problem, BoxClustering clustering) {
+  const ClusterMembers members = problem.mesh.members_of(clustering);
+  const std::uint32_t first = problem.measure.rest_row;
+  std::uint32_t best = first;
+  for (const std::uint32_t row :
+       best_rest_rows(score_rest_poses(problem.mesh.poses, members), kRestCandidates)) {
+    if (row == first) continue;
+    problem.measure.rest_row = row;
+    BoxClustering candidate = fit_boxes(problem, clustering.cluster_of_triangle);
+    if (!(candidate.cost < clustering.cost)) continue;
+    clustering = std::move(candidate);
+    best = row;
+  }
+  problem.measure.rest_row = best;
+  return clustering;
+}
+
+/// The row that explains the others best with one cluster.
+std::uint32_t first_rest_row(const MovingMesh& mesh) {
+  const ClusterMembers whole = mesh.members_of(one_cluster(mesh.triangles.size()));
+  return best_rest_rows(score_rest_poses(mesh.poses, whole), 1)[0];
+}
+
+/// Clusters as they come from few keys and, of a large mesh, few triangles.
+Growth grow_roughly(const MovingMesh& mesh, const ClusterRequest& request,
+                    const OnGrowthStep& on_step) {
+  const std::size_t triangles = mesh.triangles.size();
+  ThinnedMesh thin;
+  const bool is_thin = triangles > kWholeTriangles;
+  if (is_thin) thin = thinned(mesh.poses, mesh.triangles, triangles / kThinTriangles);
+  const MovingMesh few = is_thin ? MovingMesh{thin.poses, thin.triangles} : mesh;
+  BoxProblem problem{few, {0, row_box_areas(mesh.poses), 1}};
+  problem.measure.rest_row =
+      request.rest_key ? row_of_key(mesh.poses, *request.rest_key) : first_rest_row(few);
+  problem.measure.triangle_weight =
+      static_cast<double>(triangles) / static_cast<double>(few.triangles.size());
+
+  BoxGrowthPlan plan;
+  plan.limit = request.clusters != 0 ? std::min(kRoughClusters, request.clusters) : kRoughClusters;
+  Growth growth =
+      grow_boxes(problem, one_cluster(few.triangles.size()).cluster_of_triangle, plan, on_step);
+  BoxClustering fitted = fit_boxes(problem, growth.cluster_of_triangle);
+  if (!request.rest_key) fitted = with_best_rest_row(problem, std::move(fitted));
+  growth.rest_key = mesh.poses.keys[problem.measure.rest_row];
+  if (!is_thin) return growth;
+
+  problem.measure.triangle_weight = 1;
+  std::vector<std::uint32_t> assignment =
+      assign_to_smallest_boxes({mesh, problem.measure}, std::move(fitted.clusters));
+  for (std::size_t t = 0; t < thin.sources.size(); ++t)  // so that no cluster is lost
+    assignment[thin.sources[t]] = growth.cluster_of_triangle[t];
+  growth.cluster_of_triangle = std::move(assignment);
+  return growth;
+}
+
+}  // namespace
+
+Growth cluster_by_boxes(const PoseSequence& sequence, const ClusterRequest& request, double unit,
+                        ProgressSink& progress) {
+  double farthest = 0.03;  // clusters can become fewer
+  const auto on_step = [&](const GrowthStep& s) {
+    farthest = std::max(farthest, growth_share(s.clusters));
+    progress.report("decompose", farthest);
+  };
+  const PoseTable few = sample_poses(sequence, kRoughKeys, request.rest_key, unit);
+  progress.report("decompose", farthest);
+  Growth rough = grow_roughly({few, sequence.triangles}, request, on_step);
+
+  const std::size_t affordable = kFineEntries / std::max(1u, sequence.vertex_count);
+  const PoseTable many =
+      sample_poses(sequence, std::max(affordable, kMinFineKeys), rough.rest_key, unit);
+  const BoxProblem problem{{many, sequence.triangles},
+                           {row_of_key(many, rough.rest_key), row_box_areas(many), 1}};
+  BoxGrowthPlan plan;
+  plan.clusters = request.clusters;
+  plan.relax.max_rounds = 2;
+  plan.polish_rounds = 2;
+  Growth fine = grow_boxes(problem, std::move(rough.cluster_of_triangle), plan, on_step);
+  rough.steps.pop_back();  // the fine growth starts with it again
+  fine.steps.insert(fine.steps.begin(), rough.steps.begin(), rough.steps.end());
+  return fine;
+}
+
+}  // namespace mdk

@@ -1,0 +1,44 @@
+// The ways to clusters: by the cost of tracing their boxes, as in GFW06 by residual motion, and one
+// for each bone of a rig.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "common/base/progress.h"
+#include "common/math/affine3.h"
+#include "common/motion/pose_sequence.h"
+#include "preprocess/decomposition.h"
+#include "preprocess/options.h"
+#include "preprocess/pose/pose_space.h"
+
+namespace mdk {
+
+/// Clusters by the cost of tracing their boxes. Grown on a farthest-point sample of the keys, and
+/// of the triangles of large meshes; then on all triangles and as many keys as a work budget
+/// allows. `unit`: see pose_unit; `request.stop_percent` counts for nothing. There must be as many
+/// triangles as clusters are requested.
+Growth cluster_by_boxes(const PoseSequence& sequence, const ClusterRequest& request, double unit,
+                        ProgressSink& progress);
+
+/// Clusters with the principal axes of their residual motion as local bases.
+struct PaperClusters : Growth {
+  std::vector<Affine3d> local_from_rest;  ///< K: see LocalFrames
+};
+
+/// Grown on a farthest-point sample of the keys, then relaxed on as many as a work budget allows.
+/// `unit`: see pose_unit.
+PaperClusters cluster_by_residuals(const PoseSequence& sequence, const ClusterRequest& request,
+                                   double unit, ProgressSink& progress);
+
+struct BoneClusters : Assignment {
+  std::vector<std::uint32_t> bones;  ///< K, rising: the bone of each cluster; each has triangles
+};
+
+/// Judges boxes over `keys` (rising) and, where there is one, over a pose space. The sequence has a
+/// rig. Cost: O(keys * bone weights).
+BoneClusters assign_to_bones(const PoseSequence& sequence, std::span<const std::uint32_t> keys,
+                             const PoseSpace* space);
+
+}  // namespace mdk
