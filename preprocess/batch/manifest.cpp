@@ -11,7 +11,7 @@
 #include <string_view>
 
 #include "common/base/error.h"
-#include "preprocess/cli/number_text.h"
+#include "preprocess/tool/text.h"
 
 namespace mdk {
 namespace {
@@ -118,10 +118,11 @@ class Reader {
   }
 
   std::uint64_t size(const Json& value, const std::string& place) const {
+    const std::string text = value.is_string() ? value.get<std::string>() : value.dump();
     try {
-      return parse_size("memory", value.is_string() ? value.get<std::string>() : value.dump());
+      return parse_size(text);
     } catch (const Error& error) {
-      refuse(place, error.what());
+      refuse(place, "memory " + text + ": " + error.what());
     }
   }
 

@@ -8,15 +8,15 @@
 
 #include "common/base/error.h"
 #include "preprocess/batch/path_pattern.h"
-#include "preprocess/cli/command_line.h"
-#include "preprocess/cli/key_range.h"
+#include "preprocess/tool/files.h"
+#include "preprocess/tool/shared_options.h"
 
 namespace mdk {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::uint32_t kMostFrames = 10'000'000;
+constexpr std::uint32_t kMaxFrames = 10'000'000;
 
 /// "-x.glb" would be an option.
 std::string file_word(const std::string& path) {
@@ -41,7 +41,8 @@ std::string folder_of(const std::string& path) {
 
 class Planner {
  public:
-  explicit Planner(const Manifest& manifest) : manifest_(manifest) {}
+  Planner(const Manifest& manifest, const CommandCheck& check)
+      : manifest_(manifest), check_(check) {}
 
   std::vector<Job> plan() {
     for (const ManifestItem& item : manifest_.items) plan_item(item);
@@ -159,9 +160,9 @@ class Planner {
 
   std::vector<std::uint32_t> frame_keys(const ManifestItem& item) const {
     try {
-      return parse_key_range(item.frames, kMostFrames);
+      return parse_key_range(item.frames).keys(kMaxFrames);
     } catch (const Error& error) {
-      refuse_place(manifest_, item.place + "/frames", error.what());
+      refuse_place(manifest_, item.place + "/frames", item.frames + ": " + error.what());
     }
   }
 
@@ -174,16 +175,7 @@ class Planner {
     if (!item.frames.empty() && has_number_place(output)) return plan_ranges(item, job, output);
     if (!item.frames.empty()) job.command.push_back("--frames=" + item.frames);
     if (!has_number_place(output)) job.outputs = {output};
-    finish_job(item, std::move(job), numbered_text(output, "all"));
-  }
-
-  /// "out_####.png" with another text for its number.
-  static std::string numbered_text(const std::string& pattern, const std::string& text) {
-    if (!has_number_place(pattern)) return pattern;
-    const std::size_t last = pattern.rfind('#');
-    const std::size_t before = pattern.find_last_not_of('#', last);
-    return pattern.substr(0, before == std::string::npos ? 0 : before + 1) + text +
-           pattern.substr(last + 1);
+    finish_job(item, std::move(job), numbered_path(output, "all"));
   }
 
   void plan_ranges(const ManifestItem& item, const Job& whole, const std::string& output) {
@@ -198,14 +190,14 @@ class Planner {
       if (step != 1) range.append(":").append(std::to_string(step));
       for (std::size_t i = first; i < end; ++i)
         job.outputs.push_back(numbered_path(output, keys[i]));
-      finish_job(item, std::move(job), numbered_text(output, a + "-" + b));
+      finish_job(item, std::move(job), numbered_path(output, a + "-" + b));
     }
   }
 
   /// The command itself says what is wrong with its options; once for all files of an item.
   void check_options(const ManifestItem& item, const Job& job) const {
     try {
-      CommandLine().parse(job.command);
+      check_(job.command);
     } catch (const Error& error) {
       refuse_place(manifest_, item.place + "/options", error.what());
     }
@@ -230,6 +222,7 @@ class Planner {
   }
 
   const Manifest& manifest_;
+  const CommandCheck& check_;
   std::vector<Job> jobs_;
   std::map<std::string, std::size_t> maker_;  ///< which job makes a file
   std::map<std::string, std::vector<std::string>> options_of_bake_;
@@ -237,6 +230,8 @@ class Planner {
 
 }  // namespace
 
-std::vector<Job> plan_jobs(const Manifest& manifest) { return Planner(manifest).plan(); }
+std::vector<Job> plan_jobs(const Manifest& manifest, const CommandCheck& check) {
+  return Planner(manifest, check).plan();
+}
 
 }  // namespace mdk

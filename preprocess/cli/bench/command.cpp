@@ -1,6 +1,5 @@
 // mdprep bench: the techniques side by side, timed, counted and judged by brute force; and what is
 // made of results that are there already.
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -15,13 +14,10 @@
 #include "preprocess/cli/bench/result_json.h"
 #include "preprocess/cli/bench/result_tables.h"
 #include "preprocess/cli/bench/setting.h"
-#include "preprocess/cli/commands.h"
-#include "preprocess/cli/common_options.h"
-#include "preprocess/cli/interrupt.h"
-#include "preprocess/cli/key_range.h"
-#include "preprocess/cli/number_text.h"
-#include "preprocess/cli/progress_bar.h"
-#include "preprocess/cli/view_options.h"
+#include "preprocess/commands/command_line.h"
+#include "preprocess/tool/progress_bar.h"
+#include "preprocess/tool/shared_options.h"
+#include "preprocess/tool/text.h"
 
 namespace mdk {
 namespace {
@@ -31,10 +27,8 @@ constexpr CountRange kRoundRange{1, 1000};
 
 struct BenchArguments {
   std::vector<std::string> inputs;
-  std::string techniques = "all";
-  std::string frames = "20";
-  std::string rounds = "3";
-  std::string judge = "all";
+  std::vector<std::string> techniques;
+  std::uint32_t frames = 0, rounds = 0, judged = 0;
   std::vector<std::string> from, compare;
   std::string commit, command;
   BenchOutputs outputs;
@@ -43,62 +37,45 @@ struct BenchArguments {
   MessageOptions messages;
 };
 
-std::uint32_t parse_judged(const std::string& text) {
+std::uint32_t parse_judged(std::string_view text) {
   if (text == "none") return 0;
-  return text == "all" ? kFrameRange.highest : parse_count("--judge", text, kFrameRange);
+  return text == "all" ? kFrameRange.highest : parse_count(text, kFrameRange);
 }
 
 ModelBench bench_file(const std::string& path, const BenchArguments& arguments,
                       ProgressSink& progress) {
   const MdkFile file(path);
   const Model& model = file.model();
-  const ImageSize size = parse_image_size(arguments.view.size);
   BenchConfig config;
-  config.techniques = parse_techniques(arguments.techniques);
-  config.keys =
-      spread_keys(parse_count("--frames", arguments.frames, kFrameRange), model.key_count());
-  config.camera = choose_camera(arguments.view, model.bounds, size);
-  config.width = size.width;
-  config.height = size.height;
-  FrameRequest shading;
-  choose_shading(arguments.view, shading);
-  config.shading = shading.shading;
-  config.samples = shading.samples;
-  config.occlusion_rays = shading.occlusion_rays;
-  config.rounds = parse_count("--rounds", arguments.rounds, kRoundRange);
-  config.judged = parse_judged(arguments.judge);
+  config.techniques = arguments.techniques;
+  config.keys = spread_keys(arguments.frames, model.key_count());
+  config.camera = choose_camera(arguments.view, model.bounds);
+  config.width = arguments.view.size.width;
+  config.height = arguments.view.size.height;
+  config.shading = arguments.view.shading;
+  config.samples = arguments.view.samples;
+  config.occlusion_rays = arguments.view.occlusion_rays;
+  config.rounds = arguments.rounds;
+  config.judged = arguments.judged;
   ModelBench result{path, model.triangle_count(), model.key_count(), model.cluster_count(), {}, {}};
   result.bake = read_bake_facts(path, result.triangles, result.keys, result.clusters);
   result.techniques = bench_techniques(model, config, progress);
   return result;
 }
 
-/// What can be refused before the first file is opened.
-void check_words(const BenchArguments& arguments) {
-  parse_image_size(arguments.view.size);
-  if (!arguments.view.camera.empty()) parse_camera(arguments.view.camera);
-  FrameRequest probe;
-  choose_shading(arguments.view, probe);
-  parse_techniques(arguments.techniques);
-  parse_count("--frames", arguments.frames, kFrameRange);
-  parse_count("--rounds", arguments.rounds, kRoundRange);
-  parse_judged(arguments.judge);
-}
-
 /// The options that decide what is measured, in a fixed order, files without their folders.
-std::string command_line(const BenchArguments& arguments) {
+std::string command_line(const BenchArguments& arguments, Command& command) {
   std::string line = "mdprep bench";
   for (const std::string& input : arguments.inputs)
     line += " " + std::filesystem::path(input).filename().string();
-  line += " --techniques " + arguments.techniques + " --size " + arguments.view.size +
-          " --frames " + arguments.frames + " --rounds " + arguments.rounds + " --judge " +
-          arguments.judge + " --threads " + arguments.machine.threads;
-  if (arguments.machine.isa != "best") line += " --isa " + arguments.machine.isa;
-  if (arguments.view.shading != "diffuse") line += " --shading " + arguments.view.shading;
-  if (arguments.view.samples != "1") line += " --samples " + arguments.view.samples;
-  if (arguments.view.occlusion_rays != ViewOptions().occlusion_rays)
-    line += " --ao " + arguments.view.occlusion_rays;
-  if (!arguments.view.camera.empty()) line += " --camera \"" + arguments.view.camera + "\"";
+  for (const char* name :
+       {"--techniques", "--size", "--frames", "--rounds", "--judge", "--threads"})
+    line.append(" ").append(name).append(" ").append(command.option(name).text());
+  for (const char* name : {"--isa", "--shading", "--samples", "--ao"})
+    if (const Option& option = command.option(name); option.text() != option.standard)
+      line.append(" ").append(name).append(" ").append(option.text());
+  if (const std::string& camera = command.option("--camera").text(); !camera.empty())
+    line.append(" --camera \"").append(camera).append("\"");
   return line;
 }
 
@@ -113,16 +90,15 @@ void require_no_mismatches(const BenchRun& run) {
                         " pixels; this is a bug, please report it with the file");
 }
 
-BenchResults measure(const BenchArguments& arguments) {
+BenchResults measure(const BenchArguments& arguments, Command& command, Interrupts& interrupts) {
   ProgressBar progress(std::cerr, progress_style(arguments.messages));
   for (const std::string& input : arguments.inputs) MdkFile{input};  // refuse any before timing one
-  const DeferredInterrupts interrupts;
-  const ImageSize size = parse_image_size(arguments.view.size);
+  const LoopCheck check = interrupts.defer();
   BenchRun run{std::string(isa_in_use()),
                thread_count(),
-               size.width,
-               size.height,
-               arguments.view.shading,
+               arguments.view.size.width,
+               arguments.view.size.height,
+               std::string(shading_id(arguments.view.shading)),
                {}};
   const double share = 1.0 / static_cast<double>(arguments.inputs.size());
   for (const std::string& input : arguments.inputs) {
@@ -132,7 +108,7 @@ BenchResults measure(const BenchArguments& arguments) {
   }
   return {this_machine(),
           this_program(arguments.commit),
-          arguments.command.empty() ? command_line(arguments) : arguments.command,
+          arguments.command.empty() ? command_line(arguments, command) : arguments.command,
           {std::move(run)}};
 }
 
@@ -150,103 +126,90 @@ void run_comparison(const BenchArguments& arguments) {
                                               read_results(arguments.compare.at(1))));
 }
 
-void run_bench(const BenchArguments& arguments) {
+void run_bench(const BenchArguments& arguments, Command& command, Interrupts& interrupts) {
   if (!arguments.compare.empty()) return run_comparison(arguments);
   if (arguments.inputs.empty() == arguments.from.empty())
     throw Error(
         ErrorCode::kUsage,
         "give the .mdk files to measure, or results with --from; see 'mdprep bench --help'");
   const MachineLimits limits(arguments.machine);
-  progress_style(arguments.messages);
-  check_words(arguments);
   check_outputs(arguments.outputs, arguments.inputs);
 
-  const BenchResults results = arguments.from.empty() ? measure(arguments) : read_all(arguments);
+  const BenchResults results =
+      arguments.from.empty() ? measure(arguments, command, interrupts) : read_all(arguments);
   for (const BenchRun& run : results.runs) print_bench_table(std::cout, run);
   write_outputs(arguments.outputs, results);
   if (arguments.from.empty()) require_no_mismatches(results.runs.front());
 }
 
-void add_measuring_options(CLI::App& command, BenchArguments& arguments) {
-  command
-      .add_option("--techniques", arguments.techniques,
-                  "all, which leaves brute-force out, or some of\n" + technique_ids() +
-                      "\n(default: all). all,-ID,... leaves some out. Brute force judges the hits "
-                      "in any case.")
-      ->type_name("all|ID,...");
-  command
-      .add_option("--frames", arguments.frames,
-                  "How many keys to render, spread evenly over all clips, 1 to " +
-                      std::to_string(kFrameRange.highest) +
-                      ";\nno more than there are (default: 20).")
-      ->type_name("N");
-  command
-      .add_option("--rounds", arguments.rounds,
-                  "How often each frame is timed, 1 to " + std::to_string(kRoundRange.highest) +
-                      "; the fastest counts (default: 3).")
-      ->type_name("N");
-  command
-      .add_option("--judge", arguments.judge,
-                  "How many of the frames brute force judges, which is slow on large models\n"
-                  "(default: all).")
-      ->type_name("all|N|none");
+void add_measuring_options(Command& command, BenchArguments& arguments) {
+  command.add_value("--techniques", "all|ID,...",
+                    "all, which leaves brute-force out, or some of\n" + technique_ids() +
+                        "\n(default: all). all,-ID,... leaves some out. Brute force judges the "
+                        "hits in any case.",
+                    "all", arguments.techniques, parse_techniques);
+  command.add_value(
+      "--frames", "N",
+      "How many keys to render, spread evenly over all clips, 1 to " +
+          std::to_string(kFrameRange.highest) + ";\nno more than there are (default: 20).",
+      "20", arguments.frames, [](std::string_view text) { return parse_count(text, kFrameRange); });
+  command.add_value("--rounds", "N",
+                    "How often each frame is timed, 1 to " + std::to_string(kRoundRange.highest) +
+                        "; the fastest counts (default: 3).",
+                    "3", arguments.rounds,
+                    [](std::string_view text) { return parse_count(text, kRoundRange); });
+  command.add_value("--judge", "all|N|none",
+                    "How many of the frames brute force judges, which is slow on large models\n"
+                    "(default: all).",
+                    "all", arguments.judged, parse_judged);
 }
 
-void add_result_options(CLI::App& command, BenchArguments& arguments) {
-  command
-      .add_option("--from", arguments.from,
-                  "Measure nothing: take the results that --json wrote. Several become one: other\n"
-                  "models, instruction sets and threads stand side by side, and more of the same\n"
-                  "count as further rounds.")
-      ->type_name("RESULT.json...")
-      ->expected(1, -1);
-  command
-      .add_option("--compare", arguments.compare,
-                  "Measure nothing: print how the second of two results differs from the first,\n"
-                  "as ratios with their spread. What lies within the spread is called the same.")
-      ->type_name("OLD.json NEW.json")
-      ->expected(2);
+void add_result_options(Command& command, BenchArguments& arguments) {
+  command.add_texts(
+      OptionKind::kSome, "--from", "RESULT.json...",
+      "Measure nothing: take the results that --json wrote. Several become one: other\n"
+      "models, instruction sets and threads stand side by side, and more of the same\n"
+      "count as further rounds.",
+      arguments.from);
+  command.add_texts(OptionKind::kTwo, "--compare", "OLD.json NEW.json",
+                    "Measure nothing: print how the second of two results differs from the first,\n"
+                    "as ratios with their spread. What lies within the spread is called the same.",
+                    arguments.compare);
   BenchOutputs& outputs = arguments.outputs;
-  command
-      .add_option("--json", outputs.json, "Write medians and every frame as JSON (mdprep-bench/1).")
-      ->type_name("FILE");
-  command.add_option("--csv", outputs.csv, "Write the medians as CSV.")->type_name("FILE");
-  command
-      .add_option("--html", outputs.html,
-                  "Write tables and plots as one page that needs nothing else. Put NAME.json, the\n"
-                  "report of the bake, beside NAME.mdk for what baking cost.")
-      ->type_name("FILE");
-  command
-      .add_option("--markdown", outputs.markdown,
-                  "Write the same as a document, and its pictures into a folder beside it.")
-      ->type_name("FILE.md");
-  command
-      .add_option("--quote", outputs.quoting,
-                  "Make the texts of documents anew that stand between the markers\n"
-                  "<!-- bench: techniques MODEL... --> and <!-- end of bench -->.")
-      ->type_name("FILE...")
-      ->expected(1, -1);
-  command.add_option("--commit", arguments.commit, "What results give as the version measured.")
-      ->type_name("TEXT");
-  command
-      .add_option("--command", arguments.command,
-                  "What results give as the command that made them (default: this one).")
-      ->type_name("TEXT");
+  command.add_text("--json", "FILE", "Write medians and every frame as JSON (mdprep-bench/1).",
+                   outputs.json);
+  command.add_text("--csv", "FILE", "Write the medians as CSV.", outputs.csv);
+  command.add_text(
+      "--html", "FILE",
+      "Write tables and plots as one page that needs nothing else. Put NAME.json, the\n"
+      "report of the bake, beside NAME.mdk for what baking cost.",
+      outputs.html);
+  command.add_text("--markdown", "FILE.md",
+                   "Write the same as a document, and its pictures into a folder beside it.",
+                   outputs.markdown);
+  command.add_texts(OptionKind::kSome, "--quote", "FILE...",
+                    "Make the texts of documents anew that stand between the markers\n"
+                    "<!-- bench: techniques MODEL... --> and <!-- end of bench -->.",
+                    outputs.quoting);
+  command.add_text("--commit", "TEXT", "What results give as the version measured.",
+                   arguments.commit);
+  command.add_text("--command", "TEXT",
+                   "What results give as the command that made them (default: this one).",
+                   arguments.command);
 }
 
 }  // namespace
 
-CommandBody add_bench_command(CLI::App& command) {
+void add_bench_command(Command& command) {
   const auto arguments = std::make_shared<BenchArguments>();
-  command.add_option("FILE", arguments->inputs, ".mdk files made by 'mdprep bake'.")
-      ->type_name("")
-      ->expected(1, -1);
+  command.add_texts(OptionKind::kSome, "FILE", "", ".mdk files made by 'mdprep bake'.",
+                    arguments->inputs);
   add_measuring_options(command, *arguments);
   add_view_options(command, arguments->view);
   add_result_options(command, *arguments);
   add_machine_options(command, arguments->machine);
   add_message_options(command, arguments->messages);
-  command.footer(
+  command.set_notes(
       "Prints a table of medians over the frames on stdout. image ms, the time to image, is\n"
       "pose + update + trace + shade; its middle half is over the animation. Counts come from a\n"
       "pass of their own.\n"
@@ -254,7 +217,9 @@ CommandBody add_bench_command(CLI::App& command) {
       "  mdprep bench hand.mdk --size 1024x1024 --threads 1 --json hand.json --html hand.html\n"
       "  mdprep bench *.mdk --techniques fuzzy-bvh,rebuild-bvh --frames 50\n"
       "  mdprep bench --compare old.json new.json");
-  return [arguments](CommandContext&) { run_bench(*arguments); };
+  command.set_body([arguments, &command](CommandContext& context) {
+    run_bench(*arguments, command, context.interrupts);
+  });
 }
 
 }  // namespace mdk
