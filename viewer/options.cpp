@@ -24,15 +24,7 @@ WindowSize parse_window_size(std::string_view text) {
   }
 }
 
-double parse_time(std::string_view text) {
-  const double seconds = parse_real(text);
-  if (seconds < 0) throw expected("seconds from the clip's start, 0 or more");
-  return seconds;
-}
-
 int parse_viewer_threads(std::string_view text) { return text == "0" ? 0 : parse_threads(text); }
-
-std::uint64_t parse_whole(std::string_view text) { return parse_count(text, {0, 0xffffffffu}); }
 
 std::string tab_ids() {
   std::string ids;
@@ -63,8 +55,9 @@ void add_picture_options(Command& mdview, ViewerOptions& options, bool& play) {
       "rays per sample for ambient occlusion, where the shading is lit (" + usual + ")", usual,
       options.occlusion_rays, parse_occlusion_rays);
   mdview.add_text("--clip", "NAME", "animation to show, by name (the first)", options.clip);
-  mdview.add_value("--time", "T", "seconds from the clip's start (0)", "0", options.time,
-                   parse_time);
+  mdview.add_value(
+      "--time", "T", "seconds from the clip's start (0)", "0", options.time,
+      real_where([](double x) { return x >= 0; }, "seconds from the clip's start, 0 or more"));
   mdview.add_value(
       "--theme", "dark|light", "dark or light (as it was last; at first dark)", "", options.colors,
       one_of<ColorScheme>({{"dark", ColorScheme::kDark}, {"light", ColorScheme::kLight}}));
@@ -93,7 +86,7 @@ void add_session_options(Command& mdview, ViewerOptions& options) {
                   "write the whole window as PNG at the end (with --quit-after)",
                   options.screenshot);
   mdview.add_value("--quit-after", "N", "quit when N rendered frames were shown", "0",
-                   options.quit_after, parse_whole);
+                   options.quit_after, count_in({0, 0xffffffffu}));
   mdview.add_text("--state", "FILE",
                   "keep recent files and settings in this file (mdview/session.json in "
                   "$XDG_STATE_HOME or ~/.local/state)",
@@ -101,9 +94,11 @@ void add_session_options(Command& mdview, ViewerOptions& options) {
   mdview.add_flag("--no-state",
                   "neither recall nor keep anything (so it is with --print-state and --quit-after)",
                   options.no_state);
-  mdview.add_value("--random-events", "N", "", "0", options.random_events, parse_whole).is_hidden =
+  mdview
+      .add_value("--random-events", "N", "", "0", options.random_events, count_in({0, 0xffffffffu}))
+      .is_hidden = true;
+  mdview.add_value("--seed", "N", "", "1", options.seed, count_in({0, 0xffffffffu})).is_hidden =
       true;
-  mdview.add_value("--seed", "N", "", "1", options.seed, parse_whole).is_hidden = true;
   mdview.add_flag("--print-state", "print one JSON object on stdout at the end",
                   options.print_state);
 }

@@ -30,6 +30,14 @@ std::string with_prefixed(const std::string& text, std::string_view special, cha
   return result;
 }
 
+/// " a b", each as `written` has it.
+std::string joined(std::span<const std::string> names,
+                   std::string (*written)(const std::string& name)) {
+  std::string text;
+  for (const std::string& name : names) text.append(" ").append(written(name));
+  return text;
+}
+
 struct Pools {
   std::uint64_t max_light_memory = 0;  ///< bytes: jobs that declare no more are light
   std::uint64_t light_depth = 1, heavy_depth = 1;
@@ -69,21 +77,16 @@ Pools choose_pools(std::span<const Job> jobs, const EngineOptions& options) {
   return pools;
 }
 
-std::string ninja_paths(const std::vector<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names) text.append(" ").append(ninja_path(name));
-  return text;
-}
-
 /// Files that other jobs make come first among the inputs, so that ninja runs those before.
 std::string build_text(const Job& job, std::span<const Job> jobs, const EngineOptions& options,
                        const Pools& pools) {
-  std::string text = "build" + ninja_paths(job.outputs) + (job.outputs.empty() ? " " : " | ") +
-                     ninja_path(job.record) + ": " + kind_name(job.kind) + ninja_paths(job.inputs) +
-                     " | $mdprep\n";
-  text += "  line = " + ninja_value(shell_line(job_words(job, jobs, options, JobMessages::kNone))) +
-          "\n";
-  text += "  record = " + ninja_value(job.record) + "\n";
+  std::string text = "build" + joined(job.outputs, ninja_path) +
+                     (job.outputs.empty() ? " " : " | ") + ninja_path(job.record) + ": " +
+                     kind_name(job.kind) + joined(job.inputs, ninja_path) + " | $mdprep\n";
+  text +=
+      "  line = " + dollars_doubled(shell_line(job_words(job, jobs, options, JobMessages::kNone))) +
+      "\n";
+  text += "  record = " + dollars_doubled(job.record) + "\n";
   return text + "  pool = " + (job.memory_bytes <= pools.max_light_memory ? "light" : "heavy") +
          "\n";
 }
@@ -95,20 +98,15 @@ std::string phony_text(std::string_view name, std::span<const Job> jobs, JobKind
   return text + "\n";
 }
 
-std::string make_paths(const std::vector<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names) text.append(" ").append(make_path(name));
-  return text;
-}
-
 std::string rule_text(const Job& job, std::span<const Job> jobs, const EngineOptions& options) {
   const std::string record = make_path(job.record);
-  std::string text = record + ":" + make_paths(job.inputs) + " $(MDPREP)";
+  std::string text = record + ":" + joined(job.inputs, make_path) + " $(MDPREP)";
   for (const std::string& output : job.outputs)
     text += " $(if $(wildcard " + make_path(output) + "),,missing)";
-  text +=
-      "\n\t@" + make_recipe(shell_line(job_words(job, jobs, options, JobMessages::kNone))) + "\n";
-  if (!job.outputs.empty()) text += make_paths(job.outputs).substr(1) + ": " + record + " ;\n";
+  text += "\n\t@" + dollars_doubled(shell_line(job_words(job, jobs, options, JobMessages::kNone))) +
+          "\n";
+  if (!job.outputs.empty())
+    text += joined(job.outputs, make_path).substr(1) + ": " + record + " ;\n";
   return text + "-include " + record + ".d\n\n";
 }
 
@@ -117,28 +115,17 @@ std::string rule_text(const Job& job, std::span<const Job> jobs, const EngineOpt
 std::string shell_word(const std::string& word) {
   if (!word.empty() && word.find_first_not_of(kPlain) == std::string::npos) return word;
   std::string quoted = "'";
-  for (const char c : word) {
-    if (c == '\'') {
-      quoted += "'\\''";
-    } else {
-      quoted += c;
-    }
-  }
+  for (const char c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
   return quoted + "'";
 }
 
 std::string shell_line(std::span<const std::string> words) {
-  std::string line;
-  for (const std::string& word : words) {
-    if (!line.empty()) line += ' ';
-    line += shell_word(word);
-  }
-  return line;
+  return words.empty() ? "" : joined(words, shell_word).substr(1);
 }
 
 std::string ninja_path(const std::string& path) { return with_prefixed(path, "$ :", '$'); }
 
-std::string ninja_value(const std::string& text) { return with_prefixed(text, "$", '$'); }
+std::string dollars_doubled(const std::string& text) { return with_prefixed(text, "$", '$'); }
 
 std::string make_path(const std::string& path) {
   if (path.find_first_of("\\:;=*?[~'\"`()<>|&") != std::string::npos)
@@ -147,8 +134,6 @@ std::string make_path(const std::string& path) {
                                        "use --ninja");
   return with_prefixed(with_prefixed(path, " #%", '\\'), "$", '$');
 }
-
-std::string make_recipe(const std::string& line) { return with_prefixed(line, "$", '$'); }
 
 std::vector<std::string> job_words(const Job& job, std::span<const Job> jobs,
                                    const EngineOptions& options, JobMessages messages) {
@@ -179,7 +164,8 @@ std::string ninja_text(std::span<const Job> jobs, const EngineOptions& options) 
                      " by mdprep batch. Run ninja in the manifest's folder.\n"
                      "ninja_required_version = 1.7\n"
                      "builddir = " +
-                     ninja_value(options.records) + "\nmdprep = " + ninja_value(options.program) +
+                     dollars_doubled(options.records) +
+                     "\nmdprep = " + dollars_doubled(options.program) +
                      "\n\npool light\n  depth = " + std::to_string(pools.light_depth) +
                      "\npool heavy\n  depth = " + std::to_string(pools.heavy_depth) + "\n\n";
   for (const JobKind kind : kJobKinds)

@@ -55,13 +55,10 @@ std::string shell_line(std::span<const std::string> words);
 /// A path in a build statement of ninja.
 std::string ninja_path(const std::string& path);
 
-/// A value in ninja: '$' doubled.
-std::string ninja_value(const std::string& text);
+/// A value in ninja, or a recipe line of make.
+std::string dollars_doubled(const std::string& text);
 
 /// A target or prerequisite of make. Throws Error (kUsage) where make has no way to write it.
 std::string make_path(const std::string& path);
-
-/// A recipe line of make: '$' doubled.
-std::string make_recipe(const std::string& line);
 
 }  // namespace mdk

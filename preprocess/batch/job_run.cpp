@@ -56,22 +56,13 @@ JobRecord new_record(const JobRequest& request, const JobCommand& command) {
   return record;
 }
 
-/// Words of a bake that stand for files, as batches write them: before all options.
-std::vector<std::string> source_words(const std::vector<std::string>& command) {
-  std::vector<std::string> words;
-  for (std::size_t i = 1; i < command.size() && !command[i].starts_with('-'); ++i)
-    words.push_back(command[i]);
-  return words;
-}
-
 /// A folder or a numbered sequence may have got frames that were not there when it was read.
-bool read_all_sources(const JobCommand& command, const JobRecord& now, const JobRecord& last) {
-  const std::vector<std::string> words = source_words(now.command);
-  if (command.name != "bake" || words.empty()) return true;
+bool read_all_sources(const JobCommand& command, const JobRecord& last) {
+  if (!command.find_sources) return true;
   std::set<std::string> read;
   for (const FileState& input : last.inputs) read.insert(input.path);
   try {
-    const std::vector<std::string> files = command.find_files(words);
+    const std::vector<std::string> files = command.find_sources();
     return std::all_of(files.begin(), files.end(),
                        [&](const std::string& file) { return read.contains(file); });
   } catch (const Error&) {
@@ -82,18 +73,15 @@ bool read_all_sources(const JobCommand& command, const JobRecord& now, const Job
 bool is_up_to_date(const JobCommand& command, const JobRecord& last, const JobRecord& now) {
   return last.status == JobStatus::kDone && last.command_hash == now.command_hash &&
          last.program_hash == now.program_hash && last.version == now.version &&
-         read_all_sources(command, now, last) && are_unchanged(last.inputs) &&
+         read_all_sources(command, last) && are_unchanged(last.inputs) &&
          are_unchanged(last.outputs) &&
          std::none_of(last.unread.begin(), last.unread.end(), is_readable);
 }
 
-std::set<std::string> output_folders(const JobRequest& request) {
-  constexpr std::array<std::string_view, 2> kOutputOptions = {"-o", "--output"};
-  std::set<std::string> folders = {fs::path(request.record).parent_path().string()};
-  for (std::size_t i = 0; i + 1 < request.command.size(); ++i)
-    if (std::ranges::count(kOutputOptions, request.command[i]) > 0)
-      folders.insert(fs::path(request.command[i + 1]).parent_path().string());
-  if (!request.depfile.empty()) folders.insert(fs::path(request.depfile).parent_path().string());
+std::set<std::string> output_folders(const JobRequest& request, const JobCommand& command) {
+  std::set<std::string> folders;
+  for (const std::string& file : {request.record, request.depfile, command.output})
+    folders.insert(fs::path(file).parent_path().string());
   folders.erase("");
   return folders;
 }
@@ -180,7 +168,7 @@ JobResult run_job(const JobRequest& request, const JobCommand& command, Interrup
   if (command.name != "bake" && command.name != "verify" && command.name != "render")
     throw Error(ErrorCode::kUsage,
                 "mdprep job: " + command.name + " is no job; give a bake, a verify or a render");
-  const std::set<std::string> folders = output_folders(request);
+  const std::set<std::string> folders = output_folders(request, command);
   make_folders(folders);
   JobRecord record = new_record(request, command);
   run_recorded(request.record, record, [&] {

@@ -21,11 +21,13 @@ struct JobRequest {
 struct JobCommand {
   std::string name;          ///< "bake"
   std::string options_text;  ///< Command::options_text() for kResults
+  std::string output = {};   ///< what it writes, as on the command line; empty: nothing
 
-  /// The files that a bake's inputs stand for now. Throws Error.
-  std::function<std::vector<std::string>(const std::vector<std::string>& inputs)> find_files;
+  /// The files that a bake's inputs stand for now; empty: those of others do not change in number.
+  /// Throws Error.
+  std::function<std::vector<std::string>()> find_sources = {};
 
-  std::function<void(CommandContext&)> run;
+  std::function<void(CommandContext&)> run = {};
 };
 
 enum class JobResult {

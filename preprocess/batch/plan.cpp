@@ -10,6 +10,7 @@
 #include "preprocess/batch/path_pattern.h"
 #include "preprocess/tool/files.h"
 #include "preprocess/tool/shared_options.h"
+#include "preprocess/tool/text.h"
 
 namespace mdk {
 namespace {
@@ -55,6 +56,16 @@ class Planner {
     std::string path, pattern;
   };
 
+  /// Returns work(); what it throws is told with its place in the manifest.
+  template <class Work>
+  auto at(const ManifestItem& item, const std::string& field, Work work) const {
+    try {
+      return work();
+    } catch (const Error& error) {
+      refuse_place(manifest_, item.place + field, error.what());
+    }
+  }
+
   std::vector<std::string> candidates(const ManifestItem& item, const std::string& pattern) const {
     if (item.kind == JobKind::kBake || !is_pattern(pattern))
       return files_matching(manifest_.folder, pattern);
@@ -83,11 +94,7 @@ class Planner {
 
   std::string filled(const ManifestItem& item, const std::string& name, const Match& match,
                      const std::string& field) const {
-    try {
-      return file_word(fill_name(name, match.path, match.pattern));
-    } catch (const Error& error) {
-      refuse_place(manifest_, item.place + field, error.what());
-    }
+    return at(item, field, [&] { return file_word(fill_name(name, match.path, match.pattern)); });
   }
 
   Job start_job(const ManifestItem& item, const Match& match) const {
@@ -158,14 +165,6 @@ class Planner {
     finish_job(item, std::move(job), name);
   }
 
-  std::vector<std::uint32_t> frame_keys(const ManifestItem& item) const {
-    try {
-      return parse_key_range(item.frames).keys(kMaxFrames);
-    } catch (const Error& error) {
-      refuse_place(manifest_, item.place + "/frames", item.frames + ": " + error.what());
-    }
-  }
-
   void plan_render(const ManifestItem& item, const Match& match) {
     if (item.inputs.size() > 1)
       refuse_place(manifest_, item.place + "/input", "a render takes one file");
@@ -179,7 +178,9 @@ class Planner {
   }
 
   void plan_ranges(const ManifestItem& item, const Job& whole, const std::string& output) {
-    const std::vector<std::uint32_t> keys = frame_keys(item);
+    const std::vector<std::uint32_t> keys = at(item, "/frames", [&] {
+      return with_name(item.frames, [&] { return parse_key_range(item.frames).keys(kMaxFrames); });
+    });
     const std::size_t run = item.frames_per_job == 0 ? keys.size() : item.frames_per_job;
     const std::uint32_t step = keys.size() > 1 ? keys[1] - keys[0] : 1;
     for (std::size_t first = 0; first < keys.size(); first += run) {
@@ -191,15 +192,6 @@ class Planner {
       for (std::size_t i = first; i < end; ++i)
         job.outputs.push_back(numbered_path(output, keys[i]));
       finish_job(item, std::move(job), numbered_path(output, a + "-" + b));
-    }
-  }
-
-  /// The command itself says what is wrong with its options; once for all files of an item.
-  void check_options(const ManifestItem& item, const Job& job) const {
-    try {
-      check_(job.command);
-    } catch (const Error& error) {
-      refuse_place(manifest_, item.place + "/options", error.what());
     }
   }
 
@@ -218,7 +210,8 @@ class Planner {
           break;
       }
     }
-    check_options(item, jobs_[before]);
+    // The command itself says what is wrong with its options; once for all files of an item.
+    at(item, "/options", [&] { check_(jobs_[before].command); });
   }
 
   const Manifest& manifest_;

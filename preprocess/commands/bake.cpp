@@ -31,32 +31,6 @@ struct BakeArguments {
   MessageOptions messages;
 };
 
-double parse_joint_limit(std::string_view text) {
-  const double degrees = parse_real(text);
-  if (!(degrees >= 0 && degrees <= 180)) throw expected("degrees from 0 to 180");
-  return degrees;
-}
-
-std::optional<double> parse_stop(std::string_view text) {
-  if (text == "cost") return std::nullopt;
-  const double percent = parse_real(text);
-  if (!(percent > 0 && percent < 100))
-    throw expected("cost, or a percentage above 0 and below 100");
-  return percent;
-}
-
-std::optional<double> parse_quantize(std::string_view text) {
-  if (text == "off") return std::nullopt;
-  const double error = parse_real(text);
-  if (!(error > 0 && error < 1)) throw expected("off, or an error above 0 and below 1");
-  return error;
-}
-
-std::optional<std::uint32_t> parse_rest_pose(std::string_view text) {
-  if (text == "auto") return std::nullopt;
-  return parse_count(text, {0, 0xffffffffu});
-}
-
 /// 0 for "auto".
 std::uint32_t parse_auto_count(std::string_view text) {
   return text == "auto" ? 0 : parse_count(text, {});
@@ -319,10 +293,12 @@ void add_decompose_options(Command& command, DecomposeOptions& options) {
                     "cycle", options.sampling,
                     one_of<PoseSampling>({{"cycle", PoseSampling::kCycle},
                                           {"pose-space", PoseSampling::kPoseSpace}}));
-  command.add_value("--joint-limit", "DEG",
-                    "How far each joint may turn from its rest, in degrees, 0 to 180\n"
-                    "(default: 90).",
-                    "90", options.joint_limit_degrees, parse_joint_limit);
+  command.add_value(
+      "--joint-limit", "DEG",
+      "How far each joint may turn from its rest, in degrees, 0 to 180\n"
+      "(default: 90).",
+      "90", options.joint_limit_degrees,
+      real_where([](double x) { return x >= 0 && x <= 180; }, "degrees from 0 to 180"));
   command.add_value("--clusters", "auto|N",
                     "How many clusters: as many as pay, or exactly N, at least 1 (default: auto).",
                     "auto", options.clusters, parse_auto_count);
@@ -331,16 +307,20 @@ void add_decompose_options(Command& command, DecomposeOptions& options) {
       "When to stop adding clusters: cost, when more would make rays more expensive; a\n"
       "percentage above 0 and below 100: cluster by residual motion, as in the paper,\n"
       "until another cluster lowers it by less (default: cost).",
-      "cost", options.stop_percent, parse_stop);
+      "cost", options.stop_percent,
+      unless("cost", real_where([](double x) { return x > 0 && x < 100; },
+                                "cost, or a percentage above 0 and below 100")));
   command.add_value("--rest-pose", "auto|KEY",
                     "The key the local bases are fitted to, counted from 0 through all clips, or\n"
                     "the best there is (default: auto).",
-                    "auto", options.rest_key, parse_rest_pose);
+                    "auto", options.rest_key, unless("auto", count_in({0, 0xffffffffu})));
   command.add_value("--quantize", "off|ERROR",
                     "Store key positions with few bits: no vertex is farther off than ERROR times\n"
                     "the rest pose's diagonal, above 0 and below 1. Skins and morphs that take\n"
                     "less room stay exact (default: off).",
-                    "off", options.quantize, parse_quantize);
+                    "off", options.quantize,
+                    unless("off", real_where([](double x) { return x > 0 && x < 1; },
+                                             "off, or an error above 0 and below 1")));
   command.add_value(
       "--segments", "auto|N",
       "Into how many stretches of time, each with boxes and trees of its own: as many\n"
@@ -356,32 +336,33 @@ void add_decompose_options(Command& command, DecomposeOptions& options) {
 
 void add_bake_command(Command& command) {
   const auto arguments = std::make_shared<BakeArguments>();
-  Option& inputs = command.add_texts(
-      OptionKind::kSome, "INPUT", "",
-      "An animated mesh: .gltf or .glb (skins, morph targets, node animation); an .obj\n"
-      "or .ply for each key (a folder, 'walk_####.obj', or all the files); an .obj or\n"
-      ".ply and the point cache that moves it (.pc2 or .mdd); or, through Assimp, .fbx,\n"
-      ".dae, .md5mesh, .x and others.",
-      arguments->inputs);
-  inputs.is_required = true;
-  inputs.effect = OptionEffect::kFile;
-  Option& output =
-      command.add_text("-o,--output", "OUT.mdk",
-                       "The file to write. It appears whole or not at all.", arguments->output);
-  output.is_required = true;
-  output.effect = OptionEffect::kFile;
+  command
+      .add_texts(
+          OptionKind::kSome, "INPUT", "",
+          "An animated mesh: .gltf or .glb (skins, morph targets, node animation); an .obj\n"
+          "or .ply for each key (a folder, 'walk_####.obj', or all the files); an .obj or\n"
+          ".ply and the point cache that moves it (.pc2 or .mdd); or, through Assimp, .fbx,\n"
+          ".dae, .md5mesh, .x and others.",
+          arguments->inputs)
+      .required()
+      .with(OptionEffect::kFile);
+  command
+      .add_text("-o,--output", "OUT.mdk", "The file to write. It appears whole or not at all.",
+                arguments->output)
+      .required()
+      .with(OptionEffect::kFile);
   add_source_options(command, arguments->source);
   add_decompose_options(command, arguments->decompose);
   command
       .add_text("--report", "FILE",
                 "Write counts, residuals, cost and times as JSON (mdprep-bake/1).",
                 arguments->report)
-      .effect = OptionEffect::kFile;
+      .with(OptionEffect::kFile);
   command
       .add_text("--depfile", "FILE",
                 "Write every file that was read as dependencies for make and ninja.",
                 arguments->depfile)
-      .effect = OptionEffect::kNone;
+      .with(OptionEffect::kNone);
   add_machine_options(command, arguments->machine);
   add_message_options(command, arguments->messages);
   add_verbose_option(command, arguments->messages);

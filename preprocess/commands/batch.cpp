@@ -164,7 +164,7 @@ void add_batch_command(Command& command) {
                 "A JSON list of bakes, verifies and renders (docs/farm.md has its schema). Paths\n"
                 "in it are relative to its folder.",
                 arguments->manifest)
-      .is_required = true;
+      .required();
   add_engine_options(command, *arguments);
   add_summary_options(command, *arguments);
   command.set_notes(

@@ -125,33 +125,24 @@ void record(CheckResult& result, std::uint64_t looked_at, const Failures& failur
   result.failures += failures.count;
 }
 
-/// Visits the leaves of a tree that one triangle's box reaches into.
-class LeafWalk {
- public:
-  LeafWalk(const KdTreeView& tree, const Aabb& box, std::uint32_t triangle)
-      : tree_(tree), box_(box), triangle_(triangle) {}
-
-  /// Whether every leaf below `node` that must list the triangle does. A box that lies flat in a
-  /// split plane belongs to either side: a ray that crosses the plane there visits both.
-  bool is_listed(std::uint32_t node_index) {
-    const KdNode& node = tree_.nodes[node_index];
-    if (node.is_leaf()) {
-      const auto refs = tree_.refs.subspan(node.first_ref(), node.ref_count());
-      ++leaves_;
-      return std::find(refs.begin(), refs.end(), triangle_) != refs.end();
-    }
-    const float lo = box_.lo[node.axis()], hi = box_.hi[node.axis()], split = node.split();
-    if (lo == split && hi == split) return is_listed(node.below()) || is_listed(node.above());
-    return (lo >= split || is_listed(node.below())) && (hi <= split || is_listed(node.above()));
+/// Whether every leaf below a node that one triangle's box reaches into lists the triangle; counts
+/// the leaves that were looked at. A box that lies flat in a split plane belongs to either side: a
+/// ray that crosses the plane there visits both.
+bool is_listed(const KdTreeView& tree, std::uint32_t node_index, const Aabb& box,
+               std::uint32_t triangle, std::uint64_t& leaves) {
+  const KdNode& node = tree.nodes[node_index];
+  if (node.is_leaf()) {
+    const auto refs = tree.refs.subspan(node.first_ref(), node.ref_count());
+    ++leaves;
+    return std::find(refs.begin(), refs.end(), triangle) != refs.end();
   }
-  std::uint64_t leaves() const { return leaves_; }
-
- private:
-  const KdTreeView& tree_;
-  const Aabb& box_;
-  std::uint32_t triangle_;
-  std::uint64_t leaves_ = 0;
-};
+  const auto is_listed_in = [&](std::uint32_t child) {
+    return is_listed(tree, child, box, triangle, leaves);
+  };
+  const float lo = box.lo[node.axis()], hi = box.hi[node.axis()], split = node.split();
+  if (lo == split && hi == split) return is_listed_in(node.below()) || is_listed_in(node.above());
+  return (lo >= split || is_listed_in(node.below())) && (hi <= split || is_listed_in(node.above()));
+}
 
 void check_tree(const Model& model, std::size_t tree_index, CheckResult& leaves) {
   const std::size_t c = tree_index % model.clusters.size();
@@ -160,11 +151,10 @@ void check_tree(const Model& model, std::size_t tree_index, CheckResult& leaves)
   const KdTreeView tree = model.tree_view(model.fuzzy_trees[tree_index]);
   for (std::uint32_t i = 0; i < cluster.triangle_count; ++i) {
     const std::uint32_t t = cluster.first_triangle + i;
-    const Aabb box = model.fuzzy_box(segment, c, t);
     Failures unlisted;
-    LeafWalk walk(tree, box, t);
-    if (!walk.is_listed(0)) unlisted.add(t);
-    record(leaves, walk.leaves(), unlisted, "any time of segment " + std::to_string(segment));
+    std::uint64_t visited = 0;
+    if (!is_listed(tree, 0, model.fuzzy_box(segment, c, t), t, visited)) unlisted.add(t);
+    record(leaves, visited, unlisted, "any time of segment " + std::to_string(segment));
   }
 }
 

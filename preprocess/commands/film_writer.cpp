@@ -39,13 +39,13 @@ const Container* container_of(const std::string& path) {
   return nullptr;
 }
 
-std::vector<std::string> ffmpeg_words(const Container& container, const FilmFormat& format,
-                                      const std::string& file) {
+std::vector<std::string> ffmpeg_words(const Container& container, ImageSize size,
+                                      double frames_per_second, const std::string& file) {
   return {"ffmpeg", "-hide_banner", "-loglevel", "error", "-y",
           // what comes in
           "-f", "rawvideo", "-pix_fmt", "rgb24", "-s",
-          std::to_string(format.size.width) + "x" + std::to_string(format.size.height), "-r",
-          fixed_text(format.frames_per_second, 6), "-i", "pipe:0",
+          std::to_string(size.width) + "x" + std::to_string(size.height), "-r",
+          fixed_text(frames_per_second, 6), "-i", "pipe:0",
           // what comes out: even sides, which 4:2:0 colour needs
           "-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2", "-pix_fmt", "yuv420p", "-c:v", container.codec,
           "-crf", container.quality, "-b:v", "0", "-threads", "4", "-map_metadata", "-1", "-fflags",
@@ -61,12 +61,13 @@ void close_if_open(int& descriptor) {
 
 bool is_film(const std::string& path) { return container_of(path) != nullptr; }
 
-FilmWriter::FilmWriter(const std::string& path, const FilmFormat& format, Overwrite overwrite)
+FilmWriter::FilmWriter(const std::string& path, ImageSize size, double frames_per_second,
+                       Overwrite overwrite)
     : path_(path), file_(path, overwrite) {
-  start(format);
+  start(size, frames_per_second);
 }
 
-void FilmWriter::start(const FilmFormat& format) {
+void FilmWriter::start(ImageSize size, double frames_per_second) {
   int pictures[2];
   messages_ = memfd_create("ffmpeg-messages", MFD_CLOEXEC);
   if (messages_ < 0 || socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, pictures) != 0) {
@@ -75,7 +76,7 @@ void FilmWriter::start(const FilmFormat& format) {
   }
   pictures_ = pictures[0];
   std::vector<std::string> words =
-      ffmpeg_words(*container_of(path_), format, file_.temporary_path());
+      ffmpeg_words(*container_of(path_), size, frames_per_second, file_.temporary_path());
   std::vector<char*> argv;
   for (std::string& word : words) argv.push_back(word.data());
   argv.push_back(nullptr);

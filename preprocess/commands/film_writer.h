@@ -15,16 +15,12 @@ namespace mdk {
 /// Whether a file of this name is a film: it ends in .mp4, .mkv or .webm.
 bool is_film(const std::string& path);
 
-struct FilmFormat {
-  ImageSize size;
-  double frames_per_second = 30;
-};
-
 /// The film appears whole or not at all. The same pictures and the same ffmpeg give the same bytes.
 class FilmWriter {
  public:
   /// Starts ffmpeg. Throws Error (kIo) where there is none, or the file cannot be written.
-  FilmWriter(const std::string& path, const FilmFormat& format, Overwrite overwrite);
+  FilmWriter(const std::string& path, ImageSize size, double frames_per_second,
+             Overwrite overwrite);
   /// Ends ffmpeg and removes what it made unless finished.
   ~FilmWriter();
   FilmWriter(const FilmWriter&) = delete;
@@ -37,7 +33,7 @@ class FilmWriter {
   void finish();
 
  private:
-  void start(const FilmFormat& format);
+  void start(ImageSize size, double frames_per_second);
   int wait_for_end();
   [[noreturn]] void fail();
 

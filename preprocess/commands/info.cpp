@@ -278,8 +278,7 @@ void run_info(const InfoArguments& arguments) {
 
 void add_info_command(Command& command) {
   const auto arguments = std::make_shared<InfoArguments>();
-  command.add_text("FILE", "", "A .mdk file made by 'mdprep bake'.", arguments->input).is_required =
-      true;
+  command.add_text("FILE", "", "A .mdk file made by 'mdprep bake'.", arguments->input).required();
   command.add_flag("--json", "Print JSON (mdprep-info/1) instead of tables.", arguments->json);
   command.add_flag(
       "--areas",

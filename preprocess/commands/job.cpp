@@ -18,10 +18,12 @@ void run_job_command(const JobArguments& arguments, CommandContext& context) {
   const JobRequest& request = arguments.request;
   Command line = mdprep_command();
   if (!line.parse(request.command, std::cout)) return;
-  const JobCommand command = {
-      line.chosen().name(), line.chosen().options_text(OptionScope::kResults),
-      [](const std::vector<std::string>& inputs) { return find_source(inputs).files.files; },
-      [&](CommandContext& of_job) { line.run(of_job); }};
+  const Command& chosen = line.chosen();
+  JobCommand command = {chosen.name(), chosen.options_text(OptionScope::kResults)};
+  if (const Option* output = chosen.find_option("--output")) command.output = output->text();
+  if (const Option* inputs = chosen.find_option("INPUT"))
+    command.find_sources = [inputs] { return find_source(inputs->given).files.files; };
+  command.run = [&line](CommandContext& of_job) { line.run(of_job); };
   if (run_job(request, command, context.interrupts) == JobResult::kUpToDate && !arguments.quiet)
     std::cerr << "mdprep: " << request.record << ": up to date\n";
 }
@@ -35,13 +37,13 @@ void add_job_command(Command& command) {
       .add_texts(OptionKind::kSome, "COMMAND", "",
                  "The job after two dashes: a bake, verify or render with its options.",
                  request.command)
-      .is_required = true;
+      .required();
   command
       .add_text("--record", "FILE",
                 "Where to keep what came of the job (mdprep-job/1). A job whose record says that\n"
                 "command, program, inputs and outputs are as they were has nothing to do.",
                 request.record)
-      .is_required = true;
+      .required();
   command.add_texts(
       OptionKind::kOneEach, "--needs", "FILE",
       "Records of jobs that must have succeeded, one for each --needs; else this one\n"

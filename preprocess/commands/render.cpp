@@ -83,29 +83,6 @@ std::vector<PlannedFrame> plan_frames(const RenderArguments& arguments, const Mo
   return frames;
 }
 
-double parse_shutter(std::string_view text) {
-  const double seconds = parse_real(text);
-  if (seconds < 0) throw expected("seconds, 0 or more");
-  return seconds;
-}
-
-/// Each clip's own, for all of its keys: a frame is the same whatever range it is rendered in.
-class ClipCameras {
- public:
-  ClipCameras(const Model& model, const ViewOptions& view) : model_(model), view_(view) {}
-
-  const Camera& camera(std::uint32_t clip) {
-    const auto known = cameras_.find(clip);
-    if (known != cameras_.end()) return known->second;
-    return cameras_.emplace(clip, choose_camera(view_, clip_bounds(model_, clip))).first->second;
-  }
-
- private:
-  const Model& model_;
-  const ViewOptions& view_;
-  std::map<std::uint32_t, Camera> cameras_;
-};
-
 constexpr double kUsualRate = 30;
 
 /// That at which the film runs as long as the animation: of the frames of the first one's clip.
@@ -167,10 +144,10 @@ Json render_frames(const RenderArguments& arguments, const Model& model,
   request.samples = arguments.view.samples;
   request.occlusion_rays = arguments.view.occlusion_rays;
 
-  ClipCameras cameras(model, arguments.view);
+  std::map<std::uint32_t, Camera> cameras;  // each clip's own, for all its keys: a frame is the
+                                            // same in whatever range it is rendered
   std::optional<FilmWriter> film;
-  if (is_film(arguments.output))
-    film.emplace(arguments.output, FilmFormat{size, film_rate(frames)}, overwrite);
+  if (is_film(arguments.output)) film.emplace(arguments.output, size, film_rate(frames), overwrite);
 
   Json rows = Json::array();
   for (std::size_t i = 0; i < frames.size(); ++i) {
@@ -178,7 +155,9 @@ Json render_frames(const RenderArguments& arguments, const Model& model,
     const std::vector<KeyInterval> moments = moments_of(model, frames[i], arguments, request);
     request.at = frames[i].at;
     request.shutter = moments;
-    request.camera = cameras.camera(frames[i].clip);
+    const auto [camera, is_new] = cameras.try_emplace(frames[i].clip);
+    if (is_new) camera->second = choose_camera(arguments.view, clip_bounds(model, frames[i].clip));
+    request.camera = camera->second;
     request.counting = Counting::kOff;
     const FrameStats stats = renderer.render(request);
     const HeatScale heat = renderer.heat_scale();
@@ -273,25 +252,24 @@ void add_frame_options(Command& command, RenderArguments& arguments) {
   command
       .add_text("--clip", "NAME",
                 "The clip to render or that --time counts in (default: the first).", arguments.clip)
-      .effect = OptionEffect::kName;
+      .with(OptionEffect::kName);
 }
 
 }  // namespace
 
 void add_render_command(Command& command) {
   const auto arguments = std::make_shared<RenderArguments>();
-  Option& input =
-      command.add_text("FILE", "", "A .mdk file made by 'mdprep bake'.", arguments->input);
-  input.is_required = true;
-  input.effect = OptionEffect::kFile;
-  Option& output = command.add_text(
-      "-o,--output", "out_####.png",
-      "The PNG to write. A run of # becomes the number of the key, padded with zeros;\n"
-      "more than one frame needs it. Or a film: a name that ends in .mp4, .mkv or\n"
-      ".webm; needs the program ffmpeg.",
-      arguments->output);
-  output.is_required = true;
-  output.effect = OptionEffect::kFile;
+  command.add_text("FILE", "", "A .mdk file made by 'mdprep bake'.", arguments->input)
+      .required()
+      .with(OptionEffect::kFile);
+  command
+      .add_text("-o,--output", "out_####.png",
+                "The PNG to write. A run of # becomes the number of the key, padded with zeros;\n"
+                "more than one frame needs it. Or a film: a name that ends in .mp4, .mkv or\n"
+                ".webm; needs the program ffmpeg.",
+                arguments->output)
+      .required()
+      .with(OptionEffect::kFile);
   add_frame_options(command, *arguments);
   command.add_value("--technique", "ID",
                     "One of " + technique_ids() +
@@ -302,12 +280,13 @@ void add_render_command(Command& command) {
   command.add_value("--shutter", "S",
                     "How long the shutter is open, in seconds, half of it before the frame's time\n"
                     "(default: 0). Each of --samples has a time of its own, so moving parts blur.",
-                    "0", arguments->shutter_seconds, parse_shutter);
+                    "0", arguments->shutter_seconds,
+                    real_where([](double x) { return x >= 0; }, "seconds, 0 or more"));
   command
       .add_text("--stats", "FILE",
                 "Write times in ms and work per ray of every frame as JSON (mdprep-render/1).",
                 arguments->stats)
-      .effect = OptionEffect::kFile;
+      .with(OptionEffect::kFile);
   add_machine_options(command, arguments->machine);
   add_message_options(command, arguments->messages);
   add_verbose_option(command, arguments->messages);

@@ -15,12 +15,6 @@
 namespace mdk {
 namespace {
 
-double parse_fps(std::string_view text) {
-  const double fps = parse_real(text);
-  if (!(fps > 0 && fps <= 10000)) throw expected("a number above 0, at most 10000");
-  return fps;
-}
-
 /// None for all of them.
 std::vector<std::string> parse_clips(std::string_view text) {
   if (text == "all") return {};
@@ -89,12 +83,13 @@ void add_source_options(Command& command, ReadOptions& options) {
       .add_value("--clips", "all|NAME,...",
                  "Which animations: all, or names separated by commas (default: all).", "all",
                  options.clips, parse_clips)
-      .effect = OptionEffect::kName;
+      .with(OptionEffect::kName);
   command.add_value(
       "--fps", "N",
       "Keys per second at which skins, morphs and node tracks are sampled, or frames\n"
       "per second of a .pc2 or of numbered files; above 0, at most 10000 (default: 30).",
-      "30", options.fps, parse_fps);
+      "30", options.fps,
+      real_where([](double x) { return x > 0 && x <= 10000; }, "a number above 0, at most 10000"));
 }
 
 Source find_source(std::span<const std::string> inputs) {

@@ -157,10 +157,9 @@ void run_verify(const VerifyArguments& arguments, CommandContext& context) {
 
 void add_verify_command(Command& command) {
   const auto arguments = std::make_shared<VerifyArguments>();
-  Option& file =
-      command.add_text("FILE", "", "A .mdk file made by 'mdprep bake'.", arguments->input);
-  file.is_required = true;
-  file.effect = OptionEffect::kFile;
+  command.add_text("FILE", "", "A .mdk file made by 'mdprep bake'.", arguments->input)
+      .required()
+      .with(OptionEffect::kFile);
   command
       .add_texts(OptionKind::kOneEach, "--source", "INPUT",
                  "Read the source again and compare clips, triangles and the position of\n"
@@ -168,7 +167,7 @@ void add_verify_command(Command& command) {
                  ".obj and its point cache: --source twice; for several files of a sequence,\n"
                  "better name the folder or 'walk_####.obj'.",
                  arguments->source_paths)
-      .effect = OptionEffect::kFile;
+      .with(OptionEffect::kFile);
   add_source_options(command, arguments->source);
   command.option("--clips").needs = "--source";
   command.option("--fps").needs = "--source";
@@ -176,10 +175,7 @@ void add_verify_command(Command& command) {
                     "How many random times between keys to check boxes at, spread over all\n"
                     "intervals, 1 to 1000000 (default: 200, or one per interval where there are\n"
                     "more).",
-                    "auto", arguments->samples, [](std::string_view text) {
-                      return text == "auto" ? std::nullopt
-                                            : std::optional(parse_count(text, kSampleRange));
-                    });
+                    "auto", arguments->samples, unless("auto", count_in(kSampleRange)));
   command.add_value("--seed", "N", "Chooses the random times, 0 to 4294967295 (default: 1).", "1",
                     arguments->seed, [](std::string_view text) {
                       return parse_count(text, {0, 0xffffffffu});

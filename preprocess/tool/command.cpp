@@ -2,8 +2,6 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <charconv>
-#include <cmath>
 #include <list>
 #include <map>
 #include <span>
@@ -22,10 +20,7 @@ constexpr const char* kVersionText = "Print the version and exit.";
 /// "30.0" and "3e1" become "30"; other words stay.
 std::string one_spelling(const std::string& word) {
   double value = 0;
-  const char* end = word.data() + word.size();
-  const auto read = std::from_chars(word.data(), end, value);
-  const bool is_number = read.ec == std::errc() && read.ptr == end && std::isfinite(value);
-  return is_number ? shortest_text(value) : word;
+  return read_real(word, value) ? shortest_text(value) : word;
 }
 
 std::string value_text(const Option& option, const std::vector<std::string>& words) {
@@ -174,9 +169,10 @@ std::vector<Option> Command::described_options() const {
   return described;
 }
 
-Option& Command::option(const std::string& name) {
-  return *std::find_if(options_.begin(), options_.end(),
-                       [&](const Option& option) { return option.name() == name; });
+const Option* Command::find_option(const std::string& name) const {
+  const auto found = std::find_if(options_.begin(), options_.end(),
+                                  [&](const Option& option) { return option.name() == name; });
+  return found == options_.end() ? nullptr : &*found;
 }
 
 std::string Command::options_text(OptionScope scope) const {

@@ -63,6 +63,14 @@ struct Option {
   std::vector<std::string> excludes = {};  ///< options that must not
   std::vector<std::string> given = {};     ///< texts on the command line
 
+  Option& required() {
+    is_required = true;
+    return *this;
+  }
+  Option& with(OptionEffect what_depends) {
+    effect = what_depends;
+    return *this;
+  }
   bool has_name() const { return names.starts_with('-'); }
   /// Given, or else the standard one.
   const std::string& text() const { return given.empty() ? standard : given.front(); }
@@ -97,8 +105,9 @@ class Command {
     return options_.back();
   }
 
-  /// The one of this name that was added before.
-  Option& option(const std::string& name);
+  /// The one of this name that was added before, if any.
+  const Option* find_option(const std::string& name) const;
+  Option& option(const std::string& name) { return const_cast<Option&>(*find_option(name)); }
 
   /// What must hold of all values together. Throws Error.
   void add_check(std::function<void()> check) { checks_.push_back(std::move(check)); }

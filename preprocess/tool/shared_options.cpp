@@ -47,20 +47,20 @@ void add_machine_options(Command& command, MachineOptions& options) {
                  "How many threads to use, 1 to 1024, or all (default: all).\n"
                  "Results do not depend on it.",
                  "all", options.threads, parse_threads)
-      .effect = OptionEffect::kNone;
+      .with(OptionEffect::kNone);
   command
       .add_text("--isa", "sse4|avx2|avx512|neon",
                 "Use no more than this instruction set (default: the best there is). One that\n"
                 "this machine lacks is refused.",
                 options.isa)
-      .effect = OptionEffect::kNone;
+      .with(OptionEffect::kNone);
   command
       .add_value("--memory-limit", "none|SIZE",
                  "Give up with status 5 rather than use more memory than this, as in 512M or\n"
                  "1.5G (default: none).",
                  "none", options.memory_limit_bytes,
                  [](const std::string& text) { return text == "none" ? 0 : parse_size(text); })
-      .effect = OptionEffect::kNone;
+      .with(OptionEffect::kNone);
 }
 
 int parse_threads(std::string_view text) {
@@ -74,8 +74,8 @@ MachineLimits::MachineLimits(const MachineOptions& options)
 }
 
 void add_message_options(Command& command, MessageOptions& options) {
-  command.add_flag("-q,--quiet", "No progress, no summary, no notes.", options.quiet).effect =
-      OptionEffect::kNone;
+  command.add_flag("-q,--quiet", "No progress, no summary, no notes.", options.quiet)
+      .with(OptionEffect::kNone);
   command
       .add_value("--progress", "auto|always|plain|never",
                  "auto: a bar where stderr is a terminal, plain lines otherwise; always: a bar in\n"
@@ -86,13 +86,13 @@ void add_message_options(Command& command, MessageOptions& options) {
                                                        {"always", ProgressStyle::kBar},
                                                        {"plain", ProgressStyle::kLines},
                                                        {"never", ProgressStyle::kNone}}))
-      .effect = OptionEffect::kNone;
+      .with(OptionEffect::kNone);
 }
 
 void add_verbose_option(Command& command, MessageOptions& options) {
   Option& verbose = command.add_flag("-v,--verbose", "Tell more on stderr.", options.verbose);
   verbose.excludes = {"--quiet"};
-  verbose.effect = OptionEffect::kNone;
+  verbose.with(OptionEffect::kNone);
 }
 
 ProgressStyle progress_style(const MessageOptions& options) {

@@ -29,9 +29,13 @@ std::uint32_t parse_count(std::string_view text, CountRange range) {
   return value;
 }
 
+bool read_real(std::string_view text, double& value) {
+  return read_number(text, value) && std::isfinite(value);
+}
+
 double parse_real(std::string_view text) {
   double value = 0;
-  if (!read_number(text, value) || !std::isfinite(value)) throw expected("a number");
+  if (!read_real(text, value)) throw expected("a number");
   return value;
 }
 

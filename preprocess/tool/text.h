@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <iosfwd>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -38,8 +39,34 @@ struct CountRange {
 /// The whole of `text` as a whole number in `range`. Throws Error (kUsage), as all below do.
 std::uint32_t parse_count(std::string_view text, CountRange range);
 
-/// The whole of `text` as a finite number.
+/// Whether the whole of `text` is a finite number, and which.
+bool read_real(std::string_view text, double& value);
+
+/// The same, or an Error.
 double parse_real(std::string_view text);
+
+/// Makes a function that takes a whole number in `range`.
+inline auto count_in(CountRange range) {
+  return [range](std::string_view text) { return parse_count(text, range); };
+}
+
+/// Makes a function that takes a number that fits, and else says that it expected `what`.
+template <class Condition>
+auto real_where(Condition fits, std::string what) {
+  return [fits, what = std::move(what)](std::string_view text) {
+    double value = 0;
+    if (!read_real(text, value) || !fits(value)) throw expected(what);
+    return value;
+  };
+}
+
+/// Makes a function that takes `word`, which stands for nothing, or what `parser` takes.
+template <class Parser>
+auto unless(std::string_view word, Parser parser) {
+  return [word, parser](std::string_view text) {
+    return text == word ? std::nullopt : std::optional(parser(text));
+  };
+}
 
 /// "1500000", "512M", "1.5G": bytes, or KiB, MiB, GiB, TiB as K, M, G, T; above 0.
 std::uint64_t parse_size(std::string_view text);

@@ -67,7 +67,7 @@ ModelBench bench_file(const std::string& path, const BenchArguments& arguments,
 std::string command_line(const BenchArguments& arguments, Command& command) {
   std::string line = "mdprep bench";
   for (const std::string& input : arguments.inputs)
-    line += " " + std::filesystem::path(input).filename().string();
+    line.append(" ").append(std::filesystem::path(input).filename().string());
   for (const char* name :
        {"--techniques", "--size", "--frames", "--rounds", "--judge", "--threads"})
     line.append(" ").append(name).append(" ").append(command.option(name).text());
@@ -148,16 +148,15 @@ void add_measuring_options(Command& command, BenchArguments& arguments) {
                         "\n(default: all). all,-ID,... leaves some out. Brute force judges the "
                         "hits in any case.",
                     "all", arguments.techniques, parse_techniques);
-  command.add_value(
-      "--frames", "N",
-      "How many keys to render, spread evenly over all clips, 1 to " +
-          std::to_string(kFrameRange.highest) + ";\nno more than there are (default: 20).",
-      "20", arguments.frames, [](std::string_view text) { return parse_count(text, kFrameRange); });
+  command.add_value("--frames", "N",
+                    "How many keys to render, spread evenly over all clips, 1 to " +
+                        std::to_string(kFrameRange.highest) +
+                        ";\nno more than there are (default: 20).",
+                    "20", arguments.frames, count_in(kFrameRange));
   command.add_value("--rounds", "N",
                     "How often each frame is timed, 1 to " + std::to_string(kRoundRange.highest) +
                         "; the fastest counts (default: 3).",
-                    "3", arguments.rounds,
-                    [](std::string_view text) { return parse_count(text, kRoundRange); });
+                    "3", arguments.rounds, count_in(kRoundRange));
   command.add_value("--judge", "all|N|none",
                     "How many of the frames brute force judges, which is slow on large models\n"
                     "(default: all).",

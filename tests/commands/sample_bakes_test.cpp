@@ -10,9 +10,10 @@
 
 #include "common/base/isa.h"
 #include "common/base/parallel.h"
-#include "preprocess/cli/model_checks.h"
-#include "preprocess/cli/source_reader.h"
+#include "preprocess/commands/checks.h"
+#include "preprocess/commands/source.h"
 #include "preprocess/pipeline.h"
+#include "preprocess/tool/text.h"
 #include "tests/preprocess/moving_meshes.h"
 
 namespace mdk::test {
@@ -28,8 +29,8 @@ struct Sample {
 
 PoseSequence read_sample(const Sample& sample) {
   if (sample.clips == nullptr) return wild_motion(kSeed, 120);
-  SourceOptions options;
-  options.clips = sample.clips;
+  ReadOptions options;
+  options.clips = split(sample.clips, ',');
   SilentProgress progress;
   const std::string path = std::string(MDK_SOURCE_DIR) + "/assets/" + sample.name + ".glb";
   return read_source(find_source(std::vector<std::string>{path}), options, progress).sequence;

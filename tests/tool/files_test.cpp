@@ -1,4 +1,4 @@
-#include "preprocess/cli/output_paths.h"
+#include "preprocess/tool/files.h"
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -56,6 +56,44 @@ TEST(OutputPaths, SeesThroughOtherNamesOfOneFile) {
             ErrorCode::kUsage);
   EXPECT_NO_THROW(
       require_distinct_files(input, std::vector<std::string>{folder.file("b"), "", ""}));
+}
+
+std::string one(const std::string& name) {
+  const std::string dependencies[] = {name};
+  return depfile_text("t", dependencies);
+}
+
+TEST(Depfile, IsOneRule) {
+  const std::string dependencies[] = {"a.gltf", "sub/a.bin"};
+  EXPECT_EQ(depfile_text("out.mdk", dependencies), "out.mdk: \\\n  a.gltf \\\n  sub/a.bin\n");
+}
+
+TEST(Depfile, EscapesBlanksHashesAndDollars) {
+  EXPECT_EQ(one("a b"), "t: \\\n  a\\ b\n");
+  EXPECT_EQ(one("a#b"), "t: \\\n  a\\#b\n");
+  EXPECT_EQ(one("a$b"), "t: \\\n  a$$b\n");
+  EXPECT_EQ(depfile_text("my out.mdk", {}), "my\\ out.mdk:\n");
+}
+
+TEST(Depfile, BackslashesDoubleOnlyBeforeAnEscape) {
+  EXPECT_EQ(one("a\\b"), "t: \\\n  a\\b\n");
+  EXPECT_EQ(one("a\\ b"), "t: \\\n  a\\\\\\ b\n");
+}
+
+TEST(Depfile, RefusesALineBreak) { EXPECT_THROW(one("a\nb"), Error); }
+
+TEST(NumberedPath, FillsTheLastRunOfTheFileName) {
+  EXPECT_EQ(numbered_path("out_####.png", 7), "out_0007.png");
+  EXPECT_EQ(numbered_path("#.png", 123), "123.png");
+  EXPECT_EQ(numbered_path("a#b/c_##.png", 5), "a#b/c_05.png");
+  EXPECT_EQ(numbered_path("a##_b#.png", 5), "a##_b5.png");
+  EXPECT_EQ(numbered_path("a##/plain.png", 5), "a##/plain.png");
+}
+
+TEST(NumberedPath, OnlyTheFileNameCanHoldANumber) {
+  EXPECT_TRUE(has_number_place("a/b_#.png"));
+  EXPECT_FALSE(has_number_place("a#/b.png"));
+  EXPECT_FALSE(has_number_place("b.png"));
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "tests/cli/program_run.h"
+#include "tests/commands/program_run.h"
 
 #include <fcntl.h>
 #include <signal.h>

@@ -15,8 +15,8 @@
 #include <optional>
 #include <thread>
 
-#include "tests/cli/program_run.h"
-#include "tests/cli/sample_mesh.h"
+#include "tests/commands/program_run.h"
+#include "tests/commands/sample_mesh.h"
 #include "tests/formats/temp_folder.h"
 
 namespace mdk::test {

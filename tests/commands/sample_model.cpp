@@ -1,8 +1,8 @@
-#include "tests/cli/sample_model.h"
+#include "tests/commands/sample_model.h"
 
 #include "formats/gltf_reader.h"
 #include "preprocess/pipeline.h"
-#include "tests/cli/sample_mesh.h"
+#include "tests/commands/sample_mesh.h"
 #include "tests/formats/temp_folder.h"
 
 namespace mdk::test {

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "tests/cli/program_run.h"
+#include "tests/commands/program_run.h"
 #include "tests/formats/temp_folder.h"
 
 namespace mdk::test {

@@ -1,12 +1,10 @@
-#include "preprocess/cli/progress_bar.h"
+#include "preprocess/tool/progress_bar.h"
 
 #include <gmock/gmock.h>
 
 #include <algorithm>
 #include <cmath>
 #include <sstream>
-
-#include "preprocess/cli/text_table.h"
 
 namespace mdk {
 namespace {
@@ -130,16 +128,6 @@ TEST(ProgressBar, APartCoversItsShareOfTheWhole) {
   part.report("x", 0.5);
   part.report("x", 1);
   EXPECT_THAT(whole.seen, testing::ElementsAre(0.5, 0.625, 0.75));
-}
-
-TEST(TextTable, AlignsNamesLeftAndNumbersRight) {
-  TextTable table(1);
-  table.add_row({"name", "n"});
-  table.add_row({"a", "10"});
-  table.add_row({"long name"});
-  std::ostringstream out;
-  table.print(out);
-  EXPECT_EQ(out.str(), "name        n\na          10\nlong name\n");
 }
 
 }  // namespace

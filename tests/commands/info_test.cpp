@@ -4,9 +4,9 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "tests/cli/baked_sample.h"
-#include "tests/cli/program_run.h"
-#include "tests/cli/sample_mesh.h"
+#include "tests/commands/baked_sample.h"
+#include "tests/commands/program_run.h"
+#include "tests/commands/sample_mesh.h"
 
 namespace mdk::test {
 namespace {

@@ -1,4 +1,4 @@
-#include "preprocess/cli/job_shares.h"
+#include "preprocess/commands/source.h"
 
 #include <gtest/gtest.h>
 

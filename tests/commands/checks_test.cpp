@@ -1,13 +1,12 @@
-#include "preprocess/cli/model_checks.h"
+#include "preprocess/commands/checks.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
 #include "common/trace/technique.h"
-#include "preprocess/cli/hit_checks.h"
-#include "tests/cli/sample_mesh.h"
-#include "tests/cli/sample_model.h"
+#include "tests/commands/sample_mesh.h"
+#include "tests/commands/sample_model.h"
 
 namespace mdk {
 namespace {
@@ -114,7 +113,7 @@ TEST_F(ModelChecks, AReferenceToTheWrongTriangleIsSeenByTreesAndHits) {
   }
   EXPECT_EQ(failed(trees()), (Names{"leaves list every triangle that reaches into them"}));
   SilentProgress silent;
-  EXPECT_EQ(failed(check_hits(model_.view(), {}, {}, silent)),
+  EXPECT_EQ(failed(check_hits(model_.view(), {}, silent)),
             (Names{"fuzzy-kdtree gives brute force's hits"}));
 }
 
@@ -144,8 +143,7 @@ TEST_F(ModelChecks, AFlatBoxInASplitPlaneMayStandOnEitherSideButNotOnNone) {
 TEST_F(ModelChecks, EveryTechniqueAgreesOnASoundModel) {
   const Model view = model_.view();
   SilentProgress silent;
-  const std::vector<CheckResult> results =
-      check_hits(view, {}, random_moments(view, 2, kSeed), silent);
+  const std::vector<CheckResult> results = check_hits(view, random_moments(view, 2, kSeed), silent);
   EXPECT_EQ(failed(results), Names{});
   const auto is_judged = [](const TechniqueInfo& technique) {
     return technique.kind != TechniqueKind::kOracle && technique.kind != TechniqueKind::kPeer;
@@ -173,6 +171,36 @@ TEST_F(ModelChecks, RandomMomentsDependOnTheSeedAlone) {
   const Model view = model_.view();
   EXPECT_EQ(random_moments(view, 50, 1), random_moments(view, 50, 1));
   EXPECT_NE(random_moments(view, 50, 1), random_moments(view, 50, 2));
+}
+
+TEST(SourceCheck, ABakeHasItsSourcesPositionsToTheBit) {
+  const ModelStorage model = test::sample_model();
+  const PoseSequence source = test::sample_sequence();
+  const std::vector<CheckResult> results = check_source(model.view(), source);
+  ASSERT_EQ(results.size(), 2u);
+  EXPECT_TRUE(results[0].passed()) << results[0].detail;
+  EXPECT_TRUE(results[1].passed()) << results[1].detail;
+  EXPECT_EQ(results[1].count, 3 * source.triangles.size() * source.key_count());
+  EXPECT_EQ(results[1].detail, "largest error 0 of the diagonal");
+}
+
+TEST(SourceCheck, OneMovedVertexIsSeen) {
+  const ModelStorage model = test::sample_model();
+  PoseSequence source = test::sample_sequence();
+  source.pose(7)[3].y += 0.25f;
+  const std::vector<CheckResult> results = check_source(model.view(), source);
+  ASSERT_EQ(results.size(), 2u);
+  EXPECT_GT(results[1].failures, 0u);
+  EXPECT_LT(results[1].failures, 30u);
+}
+
+TEST(SourceCheck, OtherClipsAreSeenBeforePositionsAreCompared) {
+  const ModelStorage model = test::sample_model();
+  PoseSequence source = test::sample_sequence();
+  source.clips[1].name = "another";
+  const std::vector<CheckResult> results = check_source(model.view(), source);
+  ASSERT_EQ(results.size(), 1u);
+  EXPECT_FALSE(results[0].passed());
 }
 
 }  // namespace

@@ -5,14 +5,15 @@
 #include <algorithm>
 #include <cstdlib>
 #include <cstring>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "common/base/isa.h"
 #include "common/trace/shading.h"
 #include "common/trace/technique.h"
-#include "tests/cli/baked_sample.h"
-#include "tests/cli/program_run.h"
-#include "tests/cli/sample_mesh.h"
+#include "tests/commands/baked_sample.h"
+#include "tests/commands/program_run.h"
+#include "tests/commands/sample_mesh.h"
 
 namespace mdk::test {
 namespace {
@@ -166,6 +167,42 @@ TEST_F(Render, WithoutFfmpegAFilmIsRefusedInASentence) {
                            folder_.file("a.mp4") + "' -q 2> '" + folder_.file("err") + "'";
   EXPECT_EQ(WEXITSTATUS(std::system(("/usr/bin/" + line).c_str())), 4);
   EXPECT_THAT(read_text(folder_.file("err")), HasSubstr("needs the program ffmpeg"));
+  EXPECT_EQ(folder_.names(), std::vector<std::string>{"err"});
+}
+
+/// A program ffmpeg of our own that writes 200 KiB of messages before it reads a picture.
+class RenderWithTalkativeFfmpeg : public Render {
+ protected:
+  Outcome film(const std::string& end_of_script) const {
+    const TempFolder bin;
+    write_text(bin.file("ffmpeg"),
+               "#!/bin/sh\necho the first of many messages >&2\n"
+               "head -c 204800 /dev/zero | tr '\\0' x >&2\n"
+               "for last; do :; done\ncat > \"${last#file:}\"\n" +
+                   end_of_script);
+    std::filesystem::permissions(bin.file("ffmpeg"), std::filesystem::perms::owner_all);
+    const std::string line = "PATH='" + bin.path() +
+                             ":/usr/bin:/bin' timeout -s KILL 60 '" MDPREP_PATH "' render '" + baked() +
+                             "' -o '" + folder_.file("a.mp4") +
+                             "' --frames 0:9 --size 256x256 -q 2> '" + folder_.file("err") + "'";
+    Outcome outcome;
+    outcome.status = WEXITSTATUS(std::system(line.c_str()));
+    outcome.err = read_text(folder_.file("err"));
+    return outcome;
+  }
+};
+
+TEST_F(RenderWithTalkativeFfmpeg, MessagesOfAnyLengthDoNotBlockAFilm) {
+  const Outcome outcome = film("exit 0\n");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(read_text(folder_.file("a.mp4")).size(), 10u * 256 * 256 * 3);
+}
+
+TEST_F(RenderWithTalkativeFfmpeg, AFailureIsToldWithTheFirstOfThem) {
+  const Outcome outcome = film("exit 1\n");
+  EXPECT_EQ(outcome.status, 4);
+  EXPECT_TRUE(is_one_sentence(outcome.err)) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("(the first of many messages)"));
   EXPECT_EQ(folder_.names(), std::vector<std::string>{"err"});
 }
 

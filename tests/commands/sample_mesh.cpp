@@ -1,4 +1,4 @@
-#include "tests/cli/sample_mesh.h"
+#include "tests/commands/sample_mesh.h"
 
 #include <cmath>
 #include <cstdint>

@@ -9,9 +9,9 @@
 
 #include "common/base/isa.h"
 #include "formats/file_kind.h"
-#include "tests/cli/baked_sample.h"
-#include "tests/cli/program_run.h"
-#include "tests/cli/sample_mesh.h"
+#include "tests/commands/baked_sample.h"
+#include "tests/commands/program_run.h"
+#include "tests/commands/sample_mesh.h"
 #include "tests/formats/assimp_samples.h"
 #include "tests/formats/point_cache_builder.h"
 

@@ -9,7 +9,7 @@
 
 #include "formats/mdk_view.h"
 #include "formats/mdk_writer.h"
-#include "preprocess/cli/model_checks.h"
+#include "preprocess/commands/checks.h"
 #include "preprocess/pipeline.h"
 #include "tests/formats/temp_folder.h"
 #include "tests/preprocess/moving_meshes.h"
