@@ -1,5 +1,6 @@
-// What engines read: jobs as text for ninja, make, Slurm, and whatever runs lines of shell. All run
-// in the manifest's folder; each job is an 'mdprep job' line, so the engines agree on every byte.
+// What engines read: jobs as text for ninja, make, Slurm, and whatever runs lines of shell; and
+// words and paths as these want them written. All run in the manifest's folder; each job is an
+// 'mdprep job' line, so the engines agree on every byte.
 #pragma once
 
 #include <cstdint>
@@ -7,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "preprocess/batch/job.h"
+#include "preprocess/batch/plan.h"
 
 namespace mdk {
 
@@ -44,5 +45,20 @@ std::string make_text(std::span<const Job> jobs, const EngineOptions& options);
 /// A shell script that submits arrays of jobs, those with the same needs together, and a summary
 /// after all of them. With --wait it returns when that is there, with its exit status.
 std::string slurm_text(std::span<const Job> jobs, const EngineOptions& options);
+
+/// As it is where that is safe, else in single quotes.
+std::string shell_word(const std::string& word);
+
+/// Words with blanks between.
+std::string shell_line(std::span<const std::string> words);
+
+/// A path in a build statement of ninja.
+std::string ninja_path(const std::string& path);
+
+/// A value in ninja, or a recipe line of make.
+std::string dollars_doubled(const std::string& text);
+
+/// A target or prerequisite of make. Throws Error (kUsage) where make has no way to write it.
+std::string make_path(const std::string& path);
 
 }  // namespace mdk

@@ -8,9 +8,16 @@
 #include <string_view>
 #include <vector>
 
-#include "preprocess/batch/file_state.h"
-
 namespace mdk {
+
+/// What a file held, so that a later run can tell whether it still does.
+struct FileState {
+  std::string path;
+  std::uint64_t bytes = 0;
+  std::uint64_t hash = 0;  ///< XXH3 of the content
+
+  bool operator==(const FileState&) const = default;
+};
 
 enum class JobStatus {
   kStarted,  ///< and not ended: it runs, or it was killed
@@ -45,5 +52,16 @@ std::string job_record_json(const JobRecord& record);
 
 /// None where there is no file, or one that is no record: cut, or written by hand.
 std::optional<JobRecord> read_job_record(const std::string& path);
+
+/// Reads the whole file. Throws Error (kIo).
+FileState state_of_file(const std::string& path);
+
+std::vector<FileState> states_of_files(const std::vector<std::string>& paths);
+
+/// Whether every file is there and holds what it held.
+bool are_unchanged(const std::vector<FileState>& states);
+
+/// Whether it is a file and opens.
+bool is_readable(const std::string& path);
 
 }  // namespace mdk

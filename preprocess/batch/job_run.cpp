@@ -18,14 +18,9 @@
 #include "formats/atomic_file.h"
 #include "formats/mdk_sections.h"
 #include "preprocess/batch/job_record.h"
-#include "preprocess/cli/command_line.h"
-#include "preprocess/cli/depfile.h"
-#include "preprocess/cli/failure.h"
-#include "preprocess/cli/interrupt.h"
-#include "preprocess/cli/memory_limit.h"
-#include "preprocess/cli/source_reader.h"
-#include "preprocess/cli/text_file.h"
-#include "preprocess/cli/tool_version.h"
+#include "preprocess/tool/memory_limit.h"
+#include "preprocess/tool/files.h"
+#include "preprocess/tool/text.h"
 
 namespace mdk {
 namespace {
@@ -49,34 +44,25 @@ std::string task_name() {
   return array != nullptr && task != nullptr ? std::string(array) + "_" + task : "";
 }
 
-JobRecord new_record(const JobRequest& request, const CommandLine& line) {
+JobRecord new_record(const JobRequest& request, const JobCommand& command) {
   JobRecord record;
   record.command = request.command;
   record.version = version_text(tool_version());
   record.program_hash = state_of_file("/proc/self/exe").hash;
-  record.command_hash = hash_of_text(line.name() + "\n" + line.option_text(OptionScope::kResults));
+  record.command_hash = hash_of_text(command.name + "\n" + command.options_text);
   record.host = host_name();
   record.process = getpid();
   record.task = task_name();
   return record;
 }
 
-/// Words of a bake that stand for files, as batches write them: before all options.
-std::vector<std::string> source_words(const std::vector<std::string>& command) {
-  std::vector<std::string> words;
-  for (std::size_t i = 1; i < command.size() && !command[i].starts_with('-'); ++i)
-    words.push_back(command[i]);
-  return words;
-}
-
 /// A folder or a numbered sequence may have got frames that were not there when it was read.
-bool read_all_sources(const JobRecord& now, const JobRecord& last) {
-  const std::vector<std::string> words = source_words(now.command);
-  if (now.command.front() != "bake" || words.empty()) return true;
+bool read_all_sources(const JobCommand& command, const JobRecord& last) {
+  if (!command.find_sources) return true;
   std::set<std::string> read;
   for (const FileState& input : last.inputs) read.insert(input.path);
   try {
-    const std::vector<std::string> files = find_source(words).files.files;
+    const std::vector<std::string> files = command.find_sources();
     return std::all_of(files.begin(), files.end(),
                        [&](const std::string& file) { return read.contains(file); });
   } catch (const Error&) {
@@ -84,20 +70,18 @@ bool read_all_sources(const JobRecord& now, const JobRecord& last) {
   }
 }
 
-bool is_up_to_date(const JobRecord& last, const JobRecord& now) {
+bool is_up_to_date(const JobCommand& command, const JobRecord& last, const JobRecord& now) {
   return last.status == JobStatus::kDone && last.command_hash == now.command_hash &&
          last.program_hash == now.program_hash && last.version == now.version &&
-         read_all_sources(now, last) && are_unchanged(last.inputs) && are_unchanged(last.outputs) &&
+         read_all_sources(command, last) && are_unchanged(last.inputs) &&
+         are_unchanged(last.outputs) &&
          std::none_of(last.unread.begin(), last.unread.end(), is_readable);
 }
 
-std::set<std::string> output_folders(const JobRequest& request) {
-  constexpr std::array<std::string_view, 2> kOutputOptions = {"-o", "--output"};
-  std::set<std::string> folders = {fs::path(request.record).parent_path().string()};
-  for (std::size_t i = 0; i + 1 < request.command.size(); ++i)
-    if (std::ranges::count(kOutputOptions, request.command[i]) > 0)
-      folders.insert(fs::path(request.command[i + 1]).parent_path().string());
-  if (!request.depfile.empty()) folders.insert(fs::path(request.depfile).parent_path().string());
+std::set<std::string> output_folders(const JobRequest& request, const JobCommand& command) {
+  std::set<std::string> folders;
+  for (const std::string& file : {request.record, request.depfile, command.output})
+    folders.insert(fs::path(file).parent_path().string());
   folders.erase("");
   return folders;
 }
@@ -132,15 +116,15 @@ void write_depfile(const JobRequest& request, const JobRecord& record) {
   std::vector<std::string> names;
   for (const FileState& input : record.inputs) names.push_back(input.path);
   for (const std::string& path : record.unread) names.push_back(existing_folder_of(path));
-  write_text_file(request.depfile, depfile_text(request.record, names));
+  write_text_file(request.depfile,
+                  with_name("--depfile", [&] { return depfile_text(request.record, names); }));
 }
 
 /// Runs the command and fills in the rest of the record, whatever comes.
-void run_command(const CommandLine& line, JobRecord& record) {
+void run_command(const JobCommand& command, Interrupts& interrupts, JobRecord& record) {
   const Stopwatch watch;
-  CommandContext context;
-  context.overwrite = Overwrite::kIfChanged;
-  line.run(context);
+  CommandContext context{interrupts, Overwrite::kIfChanged};
+  command.run(context);
   record.seconds = watch.seconds();
   record.inputs = states_of_files(context.inputs);
   record.outputs = states_of_files(context.outputs);
@@ -180,15 +164,13 @@ void run_recorded(const std::string& path, JobRecord& record, Work work) {
 
 }  // namespace
 
-JobResult run_job(const JobRequest& request) {
-  CommandLine line;
-  if (!line.parse(request.command)) return JobResult::kRan;
-  if (line.name() != "bake" && line.name() != "verify" && line.name() != "render")
+JobResult run_job(const JobRequest& request, const JobCommand& command, Interrupts& interrupts) {
+  if (command.name != "bake" && command.name != "verify" && command.name != "render")
     throw Error(ErrorCode::kUsage,
-                "mdprep job: " + line.name() + " is no job; give a bake, a verify or a render");
-  const std::set<std::string> folders = output_folders(request);
+                "mdprep job: " + command.name + " is no job; give a bake, a verify or a render");
+  const std::set<std::string> folders = output_folders(request, command);
   make_folders(folders);
-  JobRecord record = new_record(request, line);
+  JobRecord record = new_record(request, command);
   run_recorded(request.record, record, [&] {
     record.status = JobStatus::kBlocked;
     require_needed(request.needs);
@@ -196,7 +178,7 @@ JobResult run_job(const JobRequest& request) {
   });
 
   const auto last = read_job_record(request.record);
-  if (last && is_up_to_date(*last, record)) {
+  if (last && is_up_to_date(command, *last, record)) {
     write_depfile(request, *last);
     std::error_code ignored;  // for make, which asks for a newer time stamp than the inputs'
     fs::last_write_time(request.record, fs::file_time_type::clock::now(), ignored);
@@ -206,7 +188,7 @@ JobResult run_job(const JobRequest& request) {
     for (const std::string& folder : folders) remove_abandoned_temporaries(folder);
 
   write_text_file(request.record, job_record_json(record));
-  run_recorded(request.record, record, [&] { run_command(line, record); });
+  run_recorded(request.record, record, [&] { run_command(command, interrupts, record); });
   record.peak_memory_bytes = peak_memory_bytes();
   write_depfile(request, record);
   write_text_file(request.record, job_record_json(record));

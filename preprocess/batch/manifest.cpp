@@ -5,13 +5,12 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
-#include <initializer_list>
 #include <iterator>
 #include <nlohmann/json.hpp>
 #include <string_view>
 
 #include "common/base/error.h"
-#include "preprocess/cli/number_text.h"
+#include "preprocess/tool/text.h"
 
 namespace mdk {
 namespace {
@@ -52,6 +51,23 @@ std::string below(const std::string& place, const std::string& name) {
   return place + "/" + escaped;
 }
 
+/// What "defaults" may say for all items of a kind.
+std::vector<std::string_view> default_fields(JobKind kind) {
+  std::vector<std::string_view> fields = {"options", "threads", "memory", "minutes"};
+  if (kind == JobKind::kVerify) fields.insert(fields.begin(), "source");
+  if (kind == JobKind::kRender) fields.insert(fields.begin(), "frames_per_job");
+  return fields;
+}
+
+std::vector<std::string_view> item_fields(JobKind kind) {
+  std::vector<std::string_view> fields = {"input", "exclude"};
+  if (kind != JobKind::kVerify) fields.push_back("output");
+  if (kind == JobKind::kRender) fields.push_back("frames");
+  const std::vector<std::string_view> more = default_fields(kind);
+  fields.insert(fields.end(), more.begin(), more.end());
+  return fields;
+}
+
 class Reader {
  public:
   explicit Reader(Manifest& manifest) : manifest_(manifest) {}
@@ -75,7 +91,7 @@ class Reader {
   }
 
   void require_object(const Json& value, const std::string& place,
-                      std::initializer_list<std::string_view> fields) const {
+                      const std::vector<std::string_view>& fields) const {
     if (!value.is_object()) refuse(place, "must be an object, { … }");
     for (const auto& [name, ignored] : value.items()) {
       if (std::find(fields.begin(), fields.end(), name) != fields.end()) continue;
@@ -118,10 +134,11 @@ class Reader {
   }
 
   std::uint64_t size(const Json& value, const std::string& place) const {
+    const std::string text = value.is_string() ? value.get<std::string>() : value.dump();
     try {
-      return parse_size("memory", value.is_string() ? value.get<std::string>() : value.dump());
+      return parse_size(text);
     } catch (const Error& error) {
-      refuse(place, error.what());
+      refuse(place, "memory " + text + ": " + error.what());
     }
   }
 
@@ -167,38 +184,11 @@ class Reader {
     }
   }
 
-  /// What an item of this kind may have, and defaults for all of them.
-  void require_fields(const Json& fields, const std::string& place, JobKind kind,
-                      bool are_defaults) const {
-    switch (kind) {
-      case JobKind::kBake:
-        if (are_defaults)
-          return require_object(fields, place, {"options", "threads", "memory", "minutes"});
-        return require_object(
-            fields, place,
-            {"input", "exclude", "output", "options", "threads", "memory", "minutes"});
-      case JobKind::kVerify:
-        if (are_defaults)
-          return require_object(fields, place,
-                                {"source", "options", "threads", "memory", "minutes"});
-        return require_object(
-            fields, place,
-            {"input", "exclude", "source", "options", "threads", "memory", "minutes"});
-      case JobKind::kRender:
-        if (are_defaults)
-          return require_object(fields, place,
-                                {"frames_per_job", "options", "threads", "memory", "minutes"});
-        return require_object(fields, place,
-                              {"input", "exclude", "output", "frames", "frames_per_job", "options",
-                               "threads", "memory", "minutes"});
-    }
-  }
-
   void read_item(const Json& fields, JobKind kind, const Json& defaults, ManifestItem item) {
     const std::string& place = item.place;
     const std::string default_place = std::string("/defaults/") + kind_name(kind);
-    require_fields(defaults, default_place, kind, /*are_defaults=*/true);
-    require_fields(fields, place, kind, /*are_defaults=*/false);
+    require_object(defaults, default_place, default_fields(kind));
+    require_object(fields, place, item_fields(kind));
     item.memory_bytes = kind == JobKind::kRender ? kRenderMemory : kBakeMemory;
     read_limits(defaults, default_place, item);
     read_limits(fields, place, item);

@@ -6,9 +6,13 @@
 #include <string>
 #include <vector>
 
-#include "preprocess/batch/job.h"
-
 namespace mdk {
+
+enum class JobKind { kBake, kVerify, kRender };
+inline constexpr JobKind kJobKinds[] = {JobKind::kBake, JobKind::kVerify, JobKind::kRender};
+
+/// "bake", "verify", "render".
+const char* kind_name(JobKind kind);
 
 struct ManifestItem {
   JobKind kind = JobKind::kBake;

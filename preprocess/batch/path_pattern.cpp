@@ -7,7 +7,7 @@
 #include <span>
 
 #include "common/base/error.h"
-#include "preprocess/cli/number_text.h"
+#include "preprocess/tool/text.h"
 
 namespace mdk {
 namespace {

@@ -8,15 +8,16 @@
 
 #include "common/base/error.h"
 #include "preprocess/batch/path_pattern.h"
-#include "preprocess/cli/command_line.h"
-#include "preprocess/cli/key_range.h"
+#include "preprocess/tool/files.h"
+#include "preprocess/tool/shared_options.h"
+#include "preprocess/tool/text.h"
 
 namespace mdk {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::uint32_t kMostFrames = 10'000'000;
+constexpr std::uint32_t kMaxFrames = 10'000'000;
 
 /// "-x.glb" would be an option.
 std::string file_word(const std::string& path) {
@@ -41,7 +42,8 @@ std::string folder_of(const std::string& path) {
 
 class Planner {
  public:
-  explicit Planner(const Manifest& manifest) : manifest_(manifest) {}
+  Planner(const Manifest& manifest, const CommandCheck& check)
+      : manifest_(manifest), check_(check) {}
 
   std::vector<Job> plan() {
     for (const ManifestItem& item : manifest_.items) plan_item(item);
@@ -53,6 +55,16 @@ class Planner {
   struct Match {
     std::string path, pattern;
   };
+
+  /// Returns work(); what it throws is told with its place in the manifest.
+  template <class Work>
+  auto at(const ManifestItem& item, const std::string& field, Work work) const {
+    try {
+      return work();
+    } catch (const Error& error) {
+      refuse_place(manifest_, item.place + field, error.what());
+    }
+  }
 
   std::vector<std::string> candidates(const ManifestItem& item, const std::string& pattern) const {
     if (item.kind == JobKind::kBake || !is_pattern(pattern))
@@ -82,11 +94,7 @@ class Planner {
 
   std::string filled(const ManifestItem& item, const std::string& name, const Match& match,
                      const std::string& field) const {
-    try {
-      return file_word(fill_name(name, match.path, match.pattern));
-    } catch (const Error& error) {
-      refuse_place(manifest_, item.place + field, error.what());
-    }
+    return at(item, field, [&] { return file_word(fill_name(name, match.path, match.pattern)); });
   }
 
   Job start_job(const ManifestItem& item, const Match& match) const {
@@ -157,14 +165,6 @@ class Planner {
     finish_job(item, std::move(job), name);
   }
 
-  std::vector<std::uint32_t> frame_keys(const ManifestItem& item) const {
-    try {
-      return parse_key_range(item.frames, kMostFrames);
-    } catch (const Error& error) {
-      refuse_place(manifest_, item.place + "/frames", error.what());
-    }
-  }
-
   void plan_render(const ManifestItem& item, const Match& match) {
     if (item.inputs.size() > 1)
       refuse_place(manifest_, item.place + "/input", "a render takes one file");
@@ -174,20 +174,13 @@ class Planner {
     if (!item.frames.empty() && has_number_place(output)) return plan_ranges(item, job, output);
     if (!item.frames.empty()) job.command.push_back("--frames=" + item.frames);
     if (!has_number_place(output)) job.outputs = {output};
-    finish_job(item, std::move(job), numbered_text(output, "all"));
-  }
-
-  /// "out_####.png" with another text for its number.
-  static std::string numbered_text(const std::string& pattern, const std::string& text) {
-    if (!has_number_place(pattern)) return pattern;
-    const std::size_t last = pattern.rfind('#');
-    const std::size_t before = pattern.find_last_not_of('#', last);
-    return pattern.substr(0, before == std::string::npos ? 0 : before + 1) + text +
-           pattern.substr(last + 1);
+    finish_job(item, std::move(job), numbered_path(output, "all"));
   }
 
   void plan_ranges(const ManifestItem& item, const Job& whole, const std::string& output) {
-    const std::vector<std::uint32_t> keys = frame_keys(item);
+    const std::vector<std::uint32_t> keys = at(item, "/frames", [&] {
+      return with_name(item.frames, [&] { return parse_key_range(item.frames).keys(kMaxFrames); });
+    });
     const std::size_t run = item.frames_per_job == 0 ? keys.size() : item.frames_per_job;
     const std::uint32_t step = keys.size() > 1 ? keys[1] - keys[0] : 1;
     for (std::size_t first = 0; first < keys.size(); first += run) {
@@ -198,16 +191,7 @@ class Planner {
       if (step != 1) range.append(":").append(std::to_string(step));
       for (std::size_t i = first; i < end; ++i)
         job.outputs.push_back(numbered_path(output, keys[i]));
-      finish_job(item, std::move(job), numbered_text(output, a + "-" + b));
-    }
-  }
-
-  /// The command itself says what is wrong with its options; once for all files of an item.
-  void check_options(const ManifestItem& item, const Job& job) const {
-    try {
-      CommandLine().parse(job.command);
-    } catch (const Error& error) {
-      refuse_place(manifest_, item.place + "/options", error.what());
+      finish_job(item, std::move(job), numbered_path(output, a + "-" + b));
     }
   }
 
@@ -226,10 +210,12 @@ class Planner {
           break;
       }
     }
-    check_options(item, jobs_[before]);
+    // The command itself says what is wrong with its options; once for all files of an item.
+    at(item, "/options", [&] { check_(jobs_[before].command); });
   }
 
   const Manifest& manifest_;
+  const CommandCheck& check_;
   std::vector<Job> jobs_;
   std::map<std::string, std::size_t> maker_;  ///< which job makes a file
   std::map<std::string, std::vector<std::string>> options_of_bake_;
@@ -237,6 +223,8 @@ class Planner {
 
 }  // namespace
 
-std::vector<Job> plan_jobs(const Manifest& manifest) { return Planner(manifest).plan(); }
+std::vector<Job> plan_jobs(const Manifest& manifest, const CommandCheck& check) {
+  return Planner(manifest, check).plan();
+}
 
 }  // namespace mdk

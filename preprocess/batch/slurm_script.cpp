@@ -7,12 +7,11 @@
 #include <tuple>
 
 #include "preprocess/batch/engine_files.h"
-#include "preprocess/batch/quoting.h"
 
 namespace mdk {
 namespace {
 
-constexpr std::size_t kMostTasks = 1000;  // Slurm's own limit is 1001 where nobody raised it
+constexpr std::size_t kMaxTasks = 1000;  // Slurm's own limit is 1001 where nobody raised it
 
 /// Jobs of one array, by their numbers.
 using JobArray = std::vector<std::size_t>;
@@ -24,8 +23,8 @@ std::vector<JobArray> make_arrays(std::span<const Job> jobs) {
     alike[{jobs[i].kind, jobs[i].threads, jobs[i].memory_bytes, jobs[i].minutes}].push_back(i);
   std::vector<JobArray> arrays;
   for (const auto& [limits, numbers] : alike) {
-    for (std::size_t first = 0; first < numbers.size(); first += kMostTasks) {
-      const std::size_t end = std::min(numbers.size(), first + kMostTasks);
+    for (std::size_t first = 0; first < numbers.size(); first += kMaxTasks) {
+      const std::size_t end = std::min(numbers.size(), first + kMaxTasks);
       arrays.emplace_back(numbers.begin() + static_cast<std::ptrdiff_t>(first),
                           numbers.begin() + static_cast<std::ptrdiff_t>(end));
     }

@@ -6,8 +6,7 @@
 #include <numeric>
 #include <ostream>
 
-#include "preprocess/cli/number_text.h"
-#include "preprocess/cli/text_table.h"
+#include "preprocess/tool/text.h"
 
 namespace mdk {
 namespace {

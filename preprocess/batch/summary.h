@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "preprocess/batch/job.h"
 #include "preprocess/batch/job_record.h"
+#include "preprocess/batch/plan.h"
 
 namespace mdk {
 

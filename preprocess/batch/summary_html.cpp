@@ -4,7 +4,7 @@
 #include <string_view>
 
 #include "preprocess/batch/summary.h"
-#include "preprocess/cli/number_text.h"
+#include "preprocess/tool/text.h"
 
 namespace mdk {
 namespace {

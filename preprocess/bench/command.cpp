@@ -1,6 +1,5 @@
 // mdprep bench: the techniques side by side, timed, counted and judged by brute force; and what is
 // made of results that are there already.
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -12,14 +11,11 @@
 #include "preprocess/bench/comparison.h"
 #include "preprocess/bench/measurement.h"
 #include "preprocess/bench/report.h"
-#include "preprocess/cli/commands.h"
-#include "preprocess/cli/common_options.h"
-#include "preprocess/cli/interrupt.h"
-#include "preprocess/cli/number_text.h"
-#include "preprocess/cli/output_paths.h"
-#include "preprocess/cli/progress_bar.h"
-#include "preprocess/cli/text_file.h"
-#include "preprocess/cli/view_options.h"
+#include "preprocess/commands/command_line.h"
+#include "preprocess/tool/files.h"
+#include "preprocess/tool/progress_bar.h"
+#include "preprocess/tool/shared_options.h"
+#include "preprocess/tool/text.h"
 
 namespace mdk {
 namespace {
@@ -32,10 +28,7 @@ constexpr CountRange kRoundRange{1, 1000};
 
 struct BenchArguments {
   std::vector<std::string> inputs;
-  std::string techniques = "all";
-  std::string frames = "20";
-  std::string rounds = "3";
-  std::string judge = "all";
+  BenchConfig config;
   std::vector<std::string> from, compare;
   std::string commit, command;
   std::string json, csv, html, markdown;  ///< files; empty: not asked for
@@ -47,29 +40,21 @@ struct BenchArguments {
 
 // --- measuring ---
 
-/// All that can be refused before the first file is opened; the camera depends on the model.
-BenchConfig parse_config(const BenchArguments& arguments) {
-  BenchConfig config;
-  const ImageSize size = parse_image_size(arguments.view.size);
-  config.request.width = size.width;
-  config.request.height = size.height;
-  if (!arguments.view.camera.empty()) parse_camera(arguments.view.camera);
-  choose_shading(arguments.view, config.request);
-  config.techniques = parse_techniques(arguments.techniques);
-  config.frames = parse_count("--frames", arguments.frames, kFrameRange);
-  config.rounds = parse_count("--rounds", arguments.rounds, kRoundRange);
-  if (arguments.judge == "none") config.judged = 0;
-  if (arguments.judge != "none" && arguments.judge != "all")
-    config.judged = parse_count("--judge", arguments.judge, kFrameRange);
-  return config;
+std::uint32_t parse_judged(std::string_view text) {
+  if (text == "none") return 0;
+  return text == "all" ? BenchConfig().judged : parse_count(text, kFrameRange);
 }
 
 ModelBench bench_file(const std::string& path, const ViewOptions& view, BenchConfig config,
                       ProgressSink& progress) {
   const MdkFile file(path);
   const Model& model = file.model();
-  config.request.camera =
-      choose_camera(view, model.bounds, {config.request.width, config.request.height});
+  config.request.camera = choose_camera(view, model.bounds);
+  config.request.width = view.size.width;
+  config.request.height = view.size.height;
+  config.request.shading = view.shading;
+  config.request.samples = view.samples;
+  config.request.occlusion_rays = view.occlusion_rays;
   ModelBench result{path, model.triangle_count(), model.key_count(), model.cluster_count(), {}, {}};
   result.bake = read_bake_facts(path, result.triangles, result.keys, result.clusters);
   result.techniques = bench_techniques(model, config, progress);
@@ -77,38 +62,37 @@ ModelBench bench_file(const std::string& path, const ViewOptions& view, BenchCon
 }
 
 /// The options that decide what is measured, in a fixed order, files without their folders.
-std::string command_line(const BenchArguments& arguments) {
+std::string command_line(const BenchArguments& arguments, Command& command) {
   std::string line = "mdprep bench";
   for (const std::string& input : arguments.inputs)
-    line += " " + fs::path(input).filename().string();
-  line += " --techniques " + arguments.techniques + " --size " + arguments.view.size +
-          " --frames " + arguments.frames + " --rounds " + arguments.rounds + " --judge " +
-          arguments.judge + " --threads " + arguments.machine.threads;
-  if (arguments.machine.isa != "best") line += " --isa " + arguments.machine.isa;
-  if (arguments.view.shading != "diffuse") line += " --shading " + arguments.view.shading;
-  if (arguments.view.samples != "1") line += " --samples " + arguments.view.samples;
-  if (arguments.view.occlusion_rays != ViewOptions().occlusion_rays)
-    line += " --ao " + arguments.view.occlusion_rays;
-  if (!arguments.view.camera.empty()) line += " --camera \"" + arguments.view.camera + "\"";
+    line.append(" ").append(fs::path(input).filename().string());
+  for (const char* name :
+       {"--techniques", "--size", "--frames", "--rounds", "--judge", "--threads"})
+    line.append(" ").append(name).append(" ").append(command.option(name).text());
+  for (const char* name : {"--isa", "--shading", "--samples", "--ao"})
+    if (const Option& option = command.option(name); option.text() != option.standard)
+      line.append(" ").append(name).append(" ").append(option.text());
+  if (const std::string& camera = command.option("--camera").text(); !camera.empty())
+    line.append(" --camera \"").append(camera).append("\"");
   return line;
 }
 
-BenchResults measure(const BenchArguments& arguments, const BenchConfig& config) {
+BenchResults measure(const BenchArguments& arguments, Command& command, Interrupts& interrupts) {
   ProgressBar progress(std::cerr, progress_style(arguments.messages));
   for (const std::string& input : arguments.inputs) MdkFile{input};  // refuse any before timing one
-  const DeferredInterrupts interrupts;
-  BenchRun run{{std::string(isa_in_use()), thread_count(), config.request.width,
-                config.request.height, arguments.view.shading},
+  const LoopCheck check = interrupts.defer();
+  BenchRun run{{std::string(isa_in_use()), thread_count(), arguments.view.size.width,
+                arguments.view.size.height, std::string(shading_id(arguments.view.shading))},
                {}};
   const double share = 1.0 / static_cast<double>(arguments.inputs.size());
   for (const std::string& input : arguments.inputs) {
     const double done = static_cast<double>(run.models.size()) * share;
     ProgressPart part(progress, done, done + share);
-    run.models.push_back(bench_file(input, arguments.view, config, part));
+    run.models.push_back(bench_file(input, arguments.view, arguments.config, part));
   }
   return {this_machine(),
           this_program(arguments.commit),
-          arguments.command.empty() ? command_line(arguments) : arguments.command,
+          arguments.command.empty() ? command_line(arguments, command) : arguments.command,
           {std::move(run)}};
 }
 
@@ -177,7 +161,7 @@ void print_run(const BenchRun& run) {
         std::cout << model.name() << " " << technique.id << ": " << technique.note << "\n";
 }
 
-void run_bench(const BenchArguments& arguments) {
+void run_bench(const BenchArguments& arguments, Command& command, Interrupts& interrupts) {
   const bool is_measuring = arguments.from.empty();
   if (!arguments.compare.empty()) {
     if (!arguments.inputs.empty() || !is_measuring)
@@ -190,11 +174,10 @@ void run_bench(const BenchArguments& arguments) {
         ErrorCode::kUsage,
         "give the .mdk files to measure, or results with --from; see 'mdprep bench --help'");
   const MachineLimits limits(arguments.machine);
-  progress_style(arguments.messages);
-  const BenchConfig config = parse_config(arguments);
   check_outputs(arguments);
 
-  const BenchResults results = is_measuring ? measure(arguments, config) : read_all(arguments);
+  const BenchResults results =
+      is_measuring ? measure(arguments, command, interrupts) : read_all(arguments);
   for (const BenchRun& run : results.runs) print_run(run);
   write_outputs(arguments, results);
   if (is_measuring) require_no_mismatches(results.runs.front());
@@ -202,70 +185,72 @@ void run_bench(const BenchArguments& arguments) {
 
 // --- options ---
 
-/// Adds options that have an argument.
-auto option_adder(CLI::App& command) {
-  return [&](const char* name, const char* argument, auto& value, const std::string& help) {
-    return command.add_option(name, value, help)->type_name(argument);
-  };
+void add_measuring_options(Command& command, BenchConfig& config) {
+  command.add_value("--techniques", "all|ID,...",
+                    "all, which leaves brute-force out, or some of\n" + technique_ids() +
+                        "\n(default: all). all,-ID,... leaves some out. Brute force judges the "
+                        "hits in any case.",
+                    "all", config.techniques, parse_techniques);
+  command.add_value("--frames", "N",
+                    "How many keys to render, spread evenly over all clips, 1 to " +
+                        std::to_string(kFrameRange.highest) +
+                        ";\nno more than there are (default: 20).",
+                    "20", config.frames, count_in(kFrameRange));
+  command.add_value("--rounds", "N",
+                    "How often each frame is timed, 1 to " + std::to_string(kRoundRange.highest) +
+                        "; the fastest counts (default: 3).",
+                    "3", config.rounds, count_in(kRoundRange));
+  command.add_value("--judge", "all|N|none",
+                    "How many of the frames brute force judges, which is slow on large models\n"
+                    "(default: all).",
+                    "all", config.judged, parse_judged);
 }
 
-void add_measuring_options(CLI::App& command, BenchArguments& arguments) {
-  const auto add = option_adder(command);
-  add("--techniques", "all|ID,...", arguments.techniques,
-      "all, which leaves brute-force out, or some of\n" + technique_ids() +
-          "\n(default: all). all,-ID,... leaves some out. Brute force judges the hits in any "
-          "case.");
-  add("--frames", "N", arguments.frames,
-      "How many keys to render, spread evenly over all clips, 1 to " +
-          std::to_string(kFrameRange.highest) + ";\nno more than there are (default: 20).");
-  add("--rounds", "N", arguments.rounds,
-      "How often each frame is timed, 1 to " + std::to_string(kRoundRange.highest) +
-          "; the fastest counts (default: 3).");
-  add("--judge", "all|N|none", arguments.judge,
-      "How many of the frames brute force judges, which is slow on large models\n"
-      "(default: all).");
-}
-
-void add_result_options(CLI::App& command, BenchArguments& arguments) {
-  const auto add = option_adder(command);
-  add("--from", "RESULT.json...", arguments.from,
+void add_result_options(Command& command, BenchArguments& arguments) {
+  command.add_texts(
+      OptionKind::kSome, "--from", "RESULT.json...",
       "Measure nothing: take the results that --json wrote. Several become one: other\n"
       "models, instruction sets and threads stand side by side, and more of the same\n"
-      "count as further rounds.")
-      ->expected(1, -1);
-  add("--compare", "OLD.json NEW.json", arguments.compare,
-      "Measure nothing: print how the second of two results differs from the first,\n"
-      "as ratios with their spread. What lies within the spread is called the same.")
-      ->expected(2);
-  add("--json", "FILE", arguments.json, "Write medians and every frame as JSON (mdprep-bench/1).");
-  add("--csv", "FILE", arguments.csv, "Write the medians as CSV.");
-  add("--html", "FILE", arguments.html,
+      "count as further rounds.",
+      arguments.from);
+  command.add_texts(OptionKind::kTwo, "--compare", "OLD.json NEW.json",
+                    "Measure nothing: print how the second of two results differs from the first,\n"
+                    "as ratios with their spread. What lies within the spread is called the same.",
+                    arguments.compare);
+  command.add_text("--json", "FILE", "Write medians and every frame as JSON (mdprep-bench/1).",
+                   arguments.json);
+  command.add_text("--csv", "FILE", "Write the medians as CSV.", arguments.csv);
+  command.add_text(
+      "--html", "FILE",
       "Write tables and plots as one page that needs nothing else. Put NAME.json, the\n"
-      "report of the bake, beside NAME.mdk for what baking cost.");
-  add("--markdown", "FILE.md", arguments.markdown,
-      "Write the same as a document, and its pictures into a folder beside it.");
-  add("--quote", "FILE...", arguments.quoting,
-      "Replace the texts in documents that stand between the markers\n"
-      "<!-- bench: techniques MODEL... --> and <!-- end of bench -->.")
-      ->expected(1, -1);
-  add("--commit", "TEXT", arguments.commit, "What results give as the version measured.");
-  add("--command", "TEXT", arguments.command,
-      "What results give as the command that made them (default: this one).");
+      "report of the bake, beside NAME.mdk for what baking cost.",
+      arguments.html);
+  command.add_text("--markdown", "FILE.md",
+                   "Write the same as a document, and its pictures into a folder beside it.",
+                   arguments.markdown);
+  command.add_texts(OptionKind::kSome, "--quote", "FILE...",
+                    "Replace the texts in documents that stand between the markers\n"
+                    "<!-- bench: techniques MODEL... --> and <!-- end of bench -->.",
+                    arguments.quoting);
+  command.add_text("--commit", "TEXT", "What results give as the version measured.",
+                   arguments.commit);
+  command.add_text("--command", "TEXT",
+                   "What results give as the command that made them (default: this one).",
+                   arguments.command);
 }
 
 }  // namespace
 
-CommandBody add_bench_command(CLI::App& command) {
+void add_bench_command(Command& command) {
   const auto arguments = std::make_shared<BenchArguments>();
-  command.add_option("FILE", arguments->inputs, ".mdk files made by 'mdprep bake'.")
-      ->type_name("")
-      ->expected(1, -1);
-  add_measuring_options(command, *arguments);
+  command.add_texts(OptionKind::kSome, "FILE", "", ".mdk files made by 'mdprep bake'.",
+                    arguments->inputs);
+  add_measuring_options(command, arguments->config);
   add_view_options(command, arguments->view);
   add_result_options(command, *arguments);
   add_machine_options(command, arguments->machine);
   add_message_options(command, arguments->messages);
-  command.footer(
+  command.set_notes(
       "Prints a table of medians over the frames on stdout. image ms, the time to image, is\n"
       "pose + update + trace + shade; its middle half is over the animation. Counts come from a\n"
       "pass of their own.\n"
@@ -273,7 +258,9 @@ CommandBody add_bench_command(CLI::App& command) {
       "  mdprep bench hand.mdk --size 1024x1024 --threads 1 --json hand.json --html hand.html\n"
       "  mdprep bench *.mdk --techniques fuzzy-bvh,rebuild-bvh --frames 50\n"
       "  mdprep bench --compare old.json new.json");
-  return [arguments](CommandContext&) { run_bench(*arguments); };
+  command.set_body([arguments, &command](CommandContext& context) {
+    run_bench(*arguments, command, context.interrupts);
+  });
 }
 
 }  // namespace mdk

@@ -7,8 +7,8 @@
 #include <fstream>
 #include <memory>
 
-#include "preprocess/cli/key_range.h"
-#include "preprocess/cli/median.h"
+#include "preprocess/tool/shared_options.h"
+#include "preprocess/tool/measures.h"
 
 namespace mdk {
 namespace {

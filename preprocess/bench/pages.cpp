@@ -4,7 +4,7 @@
 
 #include "common/base/error.h"
 #include "preprocess/bench/report.h"
-#include "preprocess/cli/text_table.h"
+#include "preprocess/tool/text.h"
 
 namespace mdk {
 namespace {

@@ -12,7 +12,7 @@
 
 #include "common/base/error.h"
 #include "preprocess/bench/results.h"
-#include "preprocess/cli/text_file.h"
+#include "preprocess/tool/files.h"
 
 namespace mdk {
 namespace {

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "common/base/error.h"
-#include "preprocess/cli/median.h"
+#include "preprocess/tool/measures.h"
 
 namespace mdk {
 namespace {

@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "common/trace/frame_stats.h"
-#include "preprocess/cli/work_per_ray.h"
+#include "preprocess/tool/measures.h"
 #include "preprocess/pipeline.h"
 
 namespace mdk {

@@ -6,11 +6,12 @@
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
+#include <iostream>
 #include <nlohmann/json.hpp>
 
 #include "formats/image_writer.h"
-#include "preprocess/batch/manifest.h"
 #include "preprocess/batch/plan.h"
+#include "preprocess/commands/command_line.h"
 
 namespace mdk::test {
 namespace {
@@ -91,7 +92,11 @@ void BatchFolder::write_source(const std::string& name, int seed) const {
   write_png(file(name + ".png"), 1, 1, std::span(&pixel, 1));
 }
 
-std::vector<Job> BatchFolder::plan() const { return plan_jobs(read_manifest(manifest())); }
+std::vector<Job> BatchFolder::plan() const {
+  return plan_jobs(read_manifest(manifest()), [](const std::vector<std::string>& words) {
+    mdprep_command().parse(words, std::cout);
+  });
+}
 
 Outcome BatchFolder::batch(std::vector<std::string> options) const {
   options.insert(options.begin(), {"batch", manifest()});

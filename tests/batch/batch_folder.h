@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "preprocess/batch/job.h"
-#include "tests/cli/program_run.h"
+#include "preprocess/batch/plan.h"
+#include "tests/commands/program_run.h"
 #include "tests/formats/temp_folder.h"
 
 namespace mdk::test {

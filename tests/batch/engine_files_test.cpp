@@ -104,5 +104,21 @@ TEST_F(EngineFiles, MakeRefusesNamesItCannotHold) {
   EXPECT_THROW(make_text(jobs_, options_), Error);
 }
 
+TEST(Quoting, AShellGivesEveryWordBackAsItWas) {
+  const std::vector<std::string> words = {
+      "plain", "",    "two words", "it's", "$HOME `id` $(id)", "a\\b",  "*?[a]", "~",
+      "\"q\"", "a#b", "-n",        "!x",   "a;b&c|d",          "{a,b}", "ü=λ"};
+  std::string expected;
+  for (const std::string& word : words) expected += "<" + word + ">";
+  const BatchFolder folder;
+  EXPECT_EQ(folder.shell("printf '<%s>' " + shell_line(words)).out, expected);
+}
+
+TEST(Quoting, NinjaAndMakeDoubleTheirDollar) {
+  EXPECT_EQ(ninja_path("a b:$c"), "a$ b$:$$c");
+  EXPECT_EQ(make_path("a b#$c%"), "a\\ b\\#$$c\\%");
+  EXPECT_THROW(make_path("a:b"), Error);
+}
+
 }  // namespace
 }  // namespace mdk::test

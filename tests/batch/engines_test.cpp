@@ -13,7 +13,7 @@
 #include "preprocess/batch/job_record.h"
 #include "tests/batch/batch_folder.h"
 #include "tests/batch/slurm_cluster.h"
-#include "tests/cli/sample_mesh.h"
+#include "tests/commands/sample_mesh.h"
 
 namespace mdk::test {
 namespace {

@@ -70,8 +70,8 @@ TEST_F(Plan, LongSequencesAreCutAndEveryFrameIsKnown) {
     "renders": [{"input": "*.mdk", "output": "f/{stem}_###.png", "frames": "0:20:2",
                  "frames_per_job": 4, "options": {"size": "64x64"}}]})");
   ASSERT_EQ(jobs.size(), 4u);
-  EXPECT_THAT(jobs[1].command, ElementsAre("render", "a.mdk", "-o", "f/a_###.png",
-                                           "--frames=0:6:2", "--size=64x64"));
+  EXPECT_THAT(jobs[1].command, ElementsAre("render", "a.mdk", "-o", "f/a_###.png", "--frames=0:6:2",
+                                           "--size=64x64"));
   EXPECT_THAT(jobs[3].command, testing::Contains("--frames=16:20:2"));
   EXPECT_THAT(jobs[3].outputs, ElementsAre("f/a_016.png", "f/a_018.png", "f/a_020.png"));
   EXPECT_EQ(jobs[3].record, "records/f/a_16-20.png.json");
