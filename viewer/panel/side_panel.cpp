@@ -1,18 +1,16 @@
-#include "viewer/panel/side_panel.h"
-
+// The side panel: header, tab bar, the open page, and the last frame below it.
 #include <algorithm>
 #include <array>
 #include <string>
 
-#include "viewer/panel/frame_charts.h"
-#include "viewer/panel/number_text.h"
+#include "viewer/panel/charts.h"
 #include "viewer/panel/tabs.h"
-#include "viewer/panel/ui_parts.h"
+#include "viewer/panel/widgets.h"
 
 namespace mdk {
 namespace {
 
-constexpr float kLeastPageHeight = 160, kGoodPageHeight = 240;
+constexpr float kMinPageHeight = 160, kGoodPageHeight = 240;
 constexpr float kFooterHeight = 176, kShortFooterHeight = 72;  // without a note
 
 void draw_header(const Theme& theme, const ViewState& state, UiResult& result) {
@@ -24,8 +22,7 @@ void draw_header(const Theme& theme, const ViewState& state, UiResult& result) {
   if (state.file && ImGui::IsItemHovered()) ImGui::SetTooltip("%s", state.path.c_str());
   ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - help_width);
   if (ImGui::Button("?", {help_width, 0})) result.actions.push_back({Command::kToggleHelp});
-  record(result.widgets, "help");
-  if (ImGui::IsItemHovered()) ImGui::SetTooltip("Keys and mouse");
+  record(result.widgets, "help", "Keys and mouse");
 }
 
 // Tabs share the width: each gets its label's and an equal part of what is left.
@@ -78,8 +75,8 @@ void draw_page(const Theme& theme, ViewState& state, UiResult& result) {
 
 // What the technique chose, where it chooses.
 std::string note_of(const ViewState& state) {
-  if (!state.last_frame || state.last_frame->note.empty()) return {};
-  return "Chosen: " + state.last_frame->note;
+  if (!state.frames.last || state.frames.last->note.empty()) return {};
+  return "Chosen: " + state.frames.last->note;
 }
 
 float note_height(const std::string& note) {
@@ -94,11 +91,11 @@ enum class Footer { kWhole, kShort };
 
 void draw_footer(const Theme& theme, const ViewState& state, Footer footer, UiResult& result) {
   heading(theme, "LAST FRAME");
-  if (!state.last_frame) {
+  if (!state.frames.last) {
     ImGui::TextDisabled("none yet");
     return;
   }
-  const FrameStats& stats = state.last_frame->stats;
+  const FrameStats& stats = state.frames.last->stats;
   ImGui::PushFont(theme.fonts.large);
   ImGui::TextUnformatted(milliseconds_text(stats.time_to_image_ms()).c_str());
   ImGui::PopFont();
@@ -117,13 +114,11 @@ void draw_footer(const Theme& theme, const ViewState& state, Footer footer, UiRe
                                             {"shade", stats.shade_ms}};
   if (footer == Footer::kWhole) draw_stage_bar(theme, stages);
   if (const std::string note = note_of(state); !note.empty()) {
-    ImGui::PushTextWrapPos(0);
-    ImGui::TextDisabled("%s", note.c_str());
-    ImGui::PopTextWrapPos();
+    dim_paragraph(note);
     record(result.widgets, "chosen");
   }
   if (footer == Footer::kShort) return;
-  draw_history_plot(theme, state.history);
+  draw_history_plot(theme, state.frames.history);
   record(result.widgets, "history");
 }
 
@@ -144,7 +139,7 @@ void draw_side_panel(const Rect& place, const Theme& theme, ViewState& state, Ui
   const bool has_room = room >= (kGoodPageHeight + kFooterHeight) * theme.scale;
   const Footer footer = has_room ? Footer::kWhole : Footer::kShort;
   const float footer_height = (has_room ? kFooterHeight : kShortFooterHeight) * theme.scale;
-  const float height = std::max(kLeastPageHeight * theme.scale, room - footer_height);
+  const float height = std::max(kMinPageHeight * theme.scale, room - footer_height);
   // A page of its own for each tab, so that each keeps its place.
   ImGui::BeginChild(std::string(panel_tab_id(state.tab)).c_str(), {0, height});
   draw_page(theme, state, result);
