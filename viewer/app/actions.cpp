@@ -210,8 +210,9 @@ void App::save(const Picture& picture) {
 }
 
 Picture App::window_picture() const {
-  return {static_cast<std::uint32_t>(window_->framebuffer_width()),
-          static_cast<std::uint32_t>(window_->framebuffer_height()), window_->read_pixels()};
+  const PixelRect pixels = window_->framebuffer();
+  return {static_cast<std::uint32_t>(pixels.width), static_cast<std::uint32_t>(pixels.height),
+          window_->read_pixels()};
 }
 
 }  // namespace mdk

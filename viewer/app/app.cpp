@@ -283,7 +283,7 @@ void App::draw() {
   scheduler_.set_motion(steered || state_.playback.scrubbing() ? Motion::kDragging
                                                                : Motion::kStill);
   if (shown_.arrange(state_.compare) || highlighted_ != state_.clusters.hovered) upload_picture();
-  blit_->draw(picture_pixels(), window_->framebuffer_height());
+  blit_->draw(picture_pixels(), window_->framebuffer().height);
   window_->end_frame();
 
   widgets_ = std::move(result.widgets);

@@ -13,7 +13,6 @@
 #include "formats/atomic_file.h"
 
 namespace mdk {
-
 namespace {
 
 using Json = nlohmann::ordered_json;

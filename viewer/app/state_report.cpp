@@ -6,7 +6,6 @@
 #include "common/trace/technique.h"
 
 namespace mdk {
-
 namespace {
 
 using Json = nlohmann::ordered_json;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 #include <optional>
+#include <span>
 #include <string>
 
 #include "common/base/figure_text.h"
@@ -82,12 +83,19 @@ bool draw_row(const Row& row, const Theme& theme, const char* prefix, UiResult& 
 
 }  // namespace
 
-void draw_stage_bar(const Theme& theme, std::span<const FrameStage> stages) {
+std::array<FrameTime, 5> frame_times(const FrameStats& stats) {
+  return {FrameTime{"pose", stats.pose_ms}, FrameTime{"update", stats.update_ms},
+          FrameTime{"trace", stats.trace_ms}, FrameTime{"shade", stats.shade_ms},
+          FrameTime{"image", stats.time_to_image_ms()}};
+}
+
+void draw_stage_bar(const Theme& theme, const FrameStats& stats) {
+  const auto times = frame_times(stats);
+  const std::span stages(times.begin(), times.size() - 1);
   ImDrawList& draw = *ImGui::GetWindowDrawList();
   const ImVec2 corner = ImGui::GetCursorScreenPos();
   const float width = ImGui::GetContentRegionAvail().x, height = 7 * theme.scale;
-  double total = 0;
-  for (const FrameStage& stage : stages) total += stage.ms;
+  const double total = times.back().ms;
   draw.AddRectFilled(corner, {corner.x + width, corner.y + height}, sunken_color(), height / 2);
   double done = 0;
   for (std::size_t i = 0; i < stages.size() && total > 0; ++i) {

@@ -2,8 +2,8 @@
 // the colours of a heat map mean.
 #pragma once
 
+#include <array>
 #include <cstddef>
-#include <span>
 #include <string>
 
 #include "common/trace/heat_map.h"
@@ -13,13 +13,16 @@
 
 namespace mdk {
 
-struct FrameStage {
+struct FrameTime {
   const char* name;
   double ms;
 };
 
+/// The stages of a frame, then all of them up to the image.
+std::array<FrameTime, 5> frame_times(const FrameStats& stats);
+
 /// A bar cut in proportion, and below it each stage's time.
-void draw_stage_bar(const Theme& theme, std::span<const FrameStage> stages);
+void draw_stage_bar(const Theme& theme, const FrameStats& stats);
 
 /// One column per frame in its technique's colour, the latest at the right. The last item is the
 /// plot's area.

@@ -31,16 +31,14 @@ void draw_overlay_choices(const Theme& theme, ViewState& state, UiResult& result
   OverlaySettings& overlays = state.overlays;
   const float half = ImGui::GetContentRegionAvail().x / 2;
   const float left = ImGui::GetCursorPosX();
-  ImGui::Checkbox("World boxes", &overlays.world_boxes);
-  record(result.widgets, "world-boxes", "Boxes of the clusters now, along the world's axes");
+  checkbox("World boxes", overlays.world_boxes, result.widgets, "world-boxes",
+           "Boxes of the clusters now, along the world's axes");
   ImGui::SameLine(left + half);
-  ImGui::Checkbox("Local boxes", &overlays.local_boxes);
-  record(result.widgets, "local-boxes",
-         "Boxes that hold each cluster at every time, in its own basis");
-  ImGui::Checkbox("Tree cells", &overlays.tree_cells);
-  record(result.widgets, "tree-cells",
-         "Cells of the fuzzy kd-trees: of the cluster shown alone,\n"
-         "else of the picked triangle's, else of all");
+  checkbox("Local boxes", overlays.local_boxes, result.widgets, "local-boxes",
+           "Boxes that hold each cluster at every time, in its own basis");
+  checkbox("Tree cells", overlays.tree_cells, result.widgets, "tree-cells",
+           "Cells of the fuzzy kd-trees: of the cluster shown alone,\n"
+           "else of the picked triangle's, else of all");
   ImGui::SameLine(left + half);
   ImGui::SetNextItemWidth(-1);
   ImGui::SliderInt("##depth", &overlays.tree_depth, 0, kMaxTreeDepth, "depth %d",
@@ -105,11 +103,9 @@ void draw_row(std::uint32_t c, const ClusterFacts& facts, ViewState& state, UiRe
   ImGui::SetCursorPosX(ImGui::GetCursorPosX() + line + 2);
   ImGui::PushStyleColor(ImGuiCol_Text, shown ? text_color() : dim_color());
   ImGui::Text("%u", c);
-  for (const std::string& text :
-       {grouped_text(facts.triangles), percent(facts.residual), percent(facts.cost_share)}) {
-    ImGui::TableNextColumn();
-    ImGui::TextUnformatted(text.c_str());
-  }
+  cell(grouped_text(facts.triangles));
+  cell(percent(facts.residual));
+  cell(percent(facts.cost_share));
   ImGui::PopStyleColor();
   ImGui::TableNextColumn();
   if (toggle_button("solo", state.clusters.solo() == c, name + ":solo", result))
@@ -207,10 +203,9 @@ void draw_pick_facts(const ViewState& state, const PickedTriangle& picked, doubl
 void draw_pick_choices(const Theme& theme, ViewState& state, const PickedTriangle& picked,
                        UiResult& result) {
   heading(theme, "DRAW OVER THE PICTURE");
-  ImGui::Checkbox("Its fuzzy box, which holds it at every time", &state.overlays.fuzzy_box);
-  record(result.widgets, "fuzzy-box");
-  ImGui::Checkbox("Its cluster's basis", &state.overlays.local_basis);
-  record(result.widgets, "local-basis");
+  checkbox("Its fuzzy box, which holds it at every time", state.overlays.fuzzy_box, result.widgets,
+           "fuzzy-box");
+  checkbox("Its cluster's basis", state.overlays.local_basis, result.widgets, "local-basis");
   heading(theme, "ITS CLUSTER");
   const bool alone = state.clusters.solo() == picked.cluster;
   const float half = (ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ItemSpacing.x) / 2;
@@ -258,12 +253,9 @@ void draw_saving(const Theme& theme, UiResult& result) {
 void draw_export(const Theme& theme, ViewState& state, UiResult& result) {
   heading(theme, "EXPORT");
   ExportSettings& settings = state.export_settings;
-  if (settings.films_possible) {
-    const auto picked =
-        segmented_buttons({{"export-pictures", "Pictures"}, {"export-film", "Film"}},
-                          static_cast<std::size_t>(settings.kind), result.widgets);
-    if (picked) settings.kind = static_cast<ExportKind>(*picked);
-  }
+  if (settings.films_possible)
+    choose({{"export-pictures", "Pictures"}, {"export-film", "Film"}}, settings.kind,
+           result.widgets);
   if (state.exporting) {
     ImGui::ProgressBar(static_cast<float>(state.exporting->fraction), {-1, 6 * theme.scale}, "");
     record(result.widgets, "export-progress");
@@ -292,12 +284,9 @@ void draw_opening(const Theme& theme, const ViewState& state, UiResult& result) 
 
 void draw_window_choices(const Theme& theme, ViewState& state, UiResult& result) {
   heading(theme, "WINDOW");
-  const auto picked =
-      segmented_buttons({{"theme:dark", "Dark"}, {"theme:light", "Light"}},
-                        static_cast<std::size_t>(state.settings.colors), result.widgets);
-  if (picked) state.settings.colors = static_cast<ColorScheme>(*picked);
-  ImGui::Checkbox("Turntable", &state.turntable);
-  record(result.widgets, "turntable", "The camera goes slowly round (T)");
+  choose({{"theme:dark", "Dark"}, {"theme:light", "Light"}}, state.settings.colors, result.widgets);
+  checkbox("Turntable", state.turntable, result.widgets, "turntable",
+           "The camera goes slowly round (T)");
   const float room = ImGui::GetContentRegionAvail().x, gap = ImGui::GetStyle().ItemSpacing.x;
   ImGui::SameLine(ImGui::GetCursorPosX() + (room + gap) / 2);
   button_row({{"text-smaller", "Text -", "Smaller text and buttons (-)", Command::kSmallerText},

@@ -287,8 +287,7 @@ void draw_pose_panel(const Rect& picture, const Theme& theme, ViewState& state, 
                             ImGuiWindowFlags_AlwaysAutoResize |
                             ImGuiWindowFlags_NoFocusOnAppearing);
   HandPose& hand = state.hand;
-  ImGui::Checkbox("Pose by hand", &hand.active);
-  record(result.widgets, "pose-by-hand");
+  checkbox("Pose by hand", hand.active, result.widgets, "pose-by-hand");
   if (hand.active) {
     ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - 60 * theme.scale);
     if (ImGui::Button("Rest", {60 * theme.scale, 0})) hand.pose = rest_pose_of(*model).pose;

@@ -1,6 +1,5 @@
 // The side panel: header, tab bar, the open page, and the last frame below it.
 #include <algorithm>
-#include <array>
 #include <string>
 
 #include "viewer/panel/charts.h"
@@ -86,7 +85,7 @@ float note_height(const std::string& note) {
          ImGui::GetStyle().ItemSpacing.y;
 }
 
-/// Where there is little room, the page needs it more than the charts do.
+/// Where there is little space, the page needs it more than the charts do.
 enum class Footer { kWhole, kShort };
 
 void draw_footer(const Theme& theme, const ViewState& state, Footer footer, UiResult& result) {
@@ -108,11 +107,7 @@ void draw_footer(const Theme& theme, const ViewState& state, Footer footer, UiRe
   else
     ImGui::TextDisabled("at rest");
   ImGui::EndGroup();
-  const std::array<FrameStage, 4> stages = {FrameStage{"pose", stats.pose_ms},
-                                            {"update", stats.update_ms},
-                                            {"trace", stats.trace_ms},
-                                            {"shade", stats.shade_ms}};
-  if (footer == Footer::kWhole) draw_stage_bar(theme, stages);
+  if (footer == Footer::kWhole) draw_stage_bar(theme, stats);
   if (const std::string note = note_of(state); !note.empty()) {
     dim_paragraph(note);
     record(result.widgets, "chosen");
@@ -125,12 +120,7 @@ void draw_footer(const Theme& theme, const ViewState& state, Footer footer, UiRe
 }  // namespace
 
 void draw_side_panel(const Rect& place, const Theme& theme, ViewState& state, UiResult& result) {
-  ImGui::SetNextWindowPos({place.x, place.y});
-  ImGui::SetNextWindowSize({place.width, place.height});
-  ImGui::Begin("##side", nullptr,
-               ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
-                   ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoBringToFrontOnFocus |
-                   ImGuiWindowFlags_NoNav);
+  begin_docked("##side", place);
   draw_header(theme, state, result);
   draw_tab_bar(theme, state, result);
 

@@ -1,4 +1,5 @@
 // Pages about techniques: View, Cost and Compare.
+#include <algorithm>
 #include <array>
 #include <string>
 
@@ -39,17 +40,15 @@ void draw_camera(const Theme& theme, ViewState& state, UiResult& result) {
                                                   {"resolution:half", "1/2"},
                                                   {"resolution:quarter", "1/4"},
                                                   {"resolution:auto", "Auto"}};
-  const auto chosen = static_cast<std::size_t>(state.settings.resolution);
-  if (const auto picked = segmented_buttons(resolutions, chosen, result.widgets))
-    state.settings.resolution = static_cast<Resolution>(*picked);
+  choose(resolutions, state.settings.resolution, result.widgets);
   button_row({{"fit", "Fit", "All of the model in the picture (F)", Command::kFit},
               {"reset-view", "Reset", "Back to the first view (R)", Command::kResetView},
               {"save-picture", "Save",
                "Save the picture as PNG (P); C copies the mdprep command that makes it",
                Command::kSavePicture}},
              result);
-  ImGui::Checkbox("Keep tracing while paused", &state.settings.keep_tracing);
-  record(result.widgets, "keep-tracing");
+  checkbox("Keep tracing while paused", state.settings.keep_tracing, result.widgets,
+           "keep-tracing");
 }
 
 void draw_last_frame(const Theme& theme, const ViewState& state) {
@@ -78,9 +77,10 @@ constexpr std::size_t kColumns = 5;
 using Row = std::array<std::string, kColumns>;
 
 Row time_row(const TechniqueCost& cost) {
-  const FrameStats& s = cost.frame.stats;
-  return {short_number(s.pose_ms), short_number(s.update_ms), short_number(s.trace_ms),
-          short_number(s.shade_ms), short_number(s.time_to_image_ms())};
+  Row row;
+  std::ranges::transform(frame_times(cost.frame.stats), row.begin(),
+                         [](const FrameTime& time) { return short_number(time.ms); });
+  return row;
 }
 
 Row work_row(const TechniqueCost& cost) {
@@ -140,13 +140,10 @@ void draw_table(const Theme& theme, ViewState& state, UiResult& result) {
 
 void draw_techniques_tried(const Theme& theme, ViewState& state, UiResult& result) {
   heading(theme, "TECHNIQUES TRIED");
-  ImGui::Checkbox("Count the work", &state.settings.count_work);
-  record(result.widgets, "count-work",
-         "Traces a separate counting frame now and then;\nits times are not shown.");
-  const std::vector<ButtonSegment> columns = {{"costs:times", "Time"}, {"costs:work", "Work"}};
-  const auto chosen = static_cast<std::size_t>(state.settings.cost_columns);
-  if (const auto picked = segmented_buttons(columns, chosen, result.widgets))
-    state.settings.cost_columns = static_cast<CostColumns>(*picked);
+  checkbox("Count the work", state.settings.count_work, result.widgets, "count-work",
+           "Traces a separate counting frame now and then;\nits times are not shown.");
+  choose({{"costs:times", "Time"}, {"costs:work", "Work"}}, state.settings.cost_columns,
+         result.widgets);
   draw_table(theme, state, result);
 }
 
@@ -156,9 +153,7 @@ void draw_modes(const Theme& theme, ViewState& state, UiResult& result) {
                                             {"compare:side", "Side"},
                                             {"compare:wipe", "Wipe"},
                                             {"compare:difference", "Diff"}};
-  const auto chosen = static_cast<std::size_t>(state.compare.mode);
-  if (const auto picked = segmented_buttons(modes, chosen, result.widgets))
-    state.compare.mode = static_cast<CompareMode>(*picked);
+  choose(modes, state.compare.mode, result.widgets);
   ImGui::PushTextWrapPos(0);
   if (state.compare.mode == CompareMode::kOff) {
     ImGui::TextDisabled("A second technique traces the same view.");
@@ -178,15 +173,6 @@ void draw_times_of_both(const Theme& theme, const ViewState& state) {
   if (!state.frames.last || !state.frames.second) return;
   heading(theme, "BOTH, IN MS");
   const FrameReport &first = *state.frames.last, &second = *state.frames.second;
-  const FrameStats &a = first.stats, &b = second.stats;
-  struct Line {
-    const char* name;
-    double first, second;
-  };
-  const std::array<Line, 5> lines = {
-      Line{"pose", a.pose_ms, b.pose_ms}, Line{"update", a.update_ms, b.update_ms},
-      Line{"trace", a.trace_ms, b.trace_ms}, Line{"shade", a.shade_ms, b.shade_ms},
-      Line{"image", a.time_to_image_ms(), b.time_to_image_ms()}};
   if (!ImGui::BeginTable("##both", 3, ImGuiTableFlags_RowBg)) return;
   ImGui::TableSetupColumn("##stage", ImGuiTableColumnFlags_WidthFixed, 60 * theme.scale);
   ImGui::TableNextRow();
@@ -195,14 +181,13 @@ void draw_times_of_both(const Theme& theme, const ViewState& state) {
     ImGui::TableNextColumn();
     draw_technique_name(technique);
   }
-  for (const Line& line : lines) {
+  const auto times = frame_times(first.stats), second_times = frame_times(second.stats);
+  for (std::size_t i = 0; i < times.size(); ++i) {
     ImGui::TableNextRow();
     ImGui::TableNextColumn();
-    ImGui::TextDisabled("%s", line.name);
-    for (const double ms : {line.first, line.second}) {
-      ImGui::TableNextColumn();
-      ImGui::TextUnformatted(short_number(ms).c_str());
-    }
+    ImGui::TextDisabled("%s", times[i].name);
+    cell(short_number(times[i].ms));
+    cell(short_number(second_times[i].ms));
   }
   ImGui::EndTable();
 }

@@ -309,7 +309,7 @@ void draw_time_entry(const Theme& theme, Playback& playback, UiResult& result) {
   const float left = ImGui::GetCursorPosX(), right = ImGui::GetWindowContentRegionMax().x;
   const float with_text = right - (entry + gap + ImGui::CalcTextSize(text.data()).x);
   const bool has_text = with_text >= left;
-  if (right - entry < left) {  // no room: leave it out whole
+  if (right - entry < left) {  // no space: leave it out whole
     ImGui::NewLine();
     return;
   }
@@ -332,13 +332,7 @@ void draw_time_entry(const Theme& theme, Playback& playback, UiResult& result) {
 }  // namespace
 
 void draw_time_line(const Rect& place, const Theme& theme, ViewState& state, UiResult& result) {
-  ImGui::SetNextWindowPos({place.x, place.y});
-  ImGui::SetNextWindowSize({place.width, place.height});
-  ImGui::Begin("##time", nullptr,
-               ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
-                   ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoBringToFrontOnFocus |
-                   ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse |
-                   ImGuiWindowFlags_NoNav);
+  begin_docked("##time", place, ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse);
   const bool wraps = time_line_wraps(place.width, theme.scale);
   draw_transport(theme, state.playback, result);
   if (wraps) draw_time_entry(theme, state.playback, result);

@@ -40,6 +40,11 @@ void fact(const char* name, const std::string& value) {
   ImGui::TextUnformatted(value.c_str());
 }
 
+void cell(const std::string& text) {
+  ImGui::TableNextColumn();
+  ImGui::TextUnformatted(text.c_str());
+}
+
 void colored_text(ImU32 color, const std::string& text) {
   ImGui::PushStyleColor(ImGuiCol_Text, color);
   ImGui::TextUnformatted(text.c_str());
@@ -50,6 +55,11 @@ void dim_paragraph(const std::string& text) {
   ImGui::PushTextWrapPos(0);
   ImGui::TextDisabled("%s", text.c_str());
   ImGui::PopTextWrapPos();
+}
+
+void checkbox(const char* label, bool& on, WidgetMap& widgets, const char* name, const char* tip) {
+  ImGui::Checkbox(label, &on);
+  record(widgets, name, tip);
 }
 
 std::optional<std::size_t> segmented_buttons(const std::vector<ButtonSegment>& segments,
@@ -148,6 +158,12 @@ FloatingBox::~FloatingBox() {
   ImGui::End();
   ImGui::PopStyleVar(2);
   ImGui::PopStyleColor();
+}
+
+void begin_docked(const char* id, const Rect& place, ImGuiWindowFlags more_flags) {
+  ImGui::SetNextWindowPos({place.x, place.y});
+  ImGui::SetNextWindowSize({place.width, place.height});
+  ImGui::Begin(id, nullptr, kFixedBox | ImGuiWindowFlags_NoBringToFrontOnFocus | more_flags);
 }
 
 void center_next_window(const Rect& place) {

@@ -33,9 +33,16 @@ void heading(const Theme& theme, const char* title);
 /// One line: a dim name at the left, its value at the right.
 void fact(const char* name, const std::string& value);
 
+/// The next column of a table, with this text.
+void cell(const std::string& text);
+
 /// ImGui's text in a colour; dim and wrapped at the window's edge.
 void colored_text(ImU32 color, const std::string& text);
 void dim_paragraph(const std::string& text);
+
+/// A box to tick, recorded with its tip.
+void checkbox(const char* label, bool& on, WidgetMap& widgets, const char* name,
+              const char* tip = nullptr);
 
 struct ButtonSegment {
   std::string id;  ///< as recorded
@@ -45,6 +52,13 @@ struct ButtonSegment {
 /// Buttons side by side over the whole width, one of them chosen; the one that was clicked now.
 std::optional<std::size_t> segmented_buttons(const std::vector<ButtonSegment>& segments,
                                              std::size_t chosen, WidgetMap& widgets);
+
+/// The same for an enumeration that counts from 0.
+template <class Enum>
+void choose(const std::vector<ButtonSegment>& segments, Enum& chosen, WidgetMap& widgets) {
+  if (const auto clicked = segmented_buttons(segments, static_cast<std::size_t>(chosen), widgets))
+    chosen = static_cast<Enum>(*clicked);
+}
 
 /// A button that asks for a command.
 struct CommandButton {
@@ -77,6 +91,9 @@ class FloatingBox {
 inline constexpr ImGuiWindowFlags kFixedBox =
     ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
     ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoNav;
+
+/// Begins a window that fills `place` and stays there, below all others; ImGui::End() ends it.
+void begin_docked(const char* id, const Rect& place, ImGuiWindowFlags more_flags = 0);
 
 /// The next window stands in the middle of `place`.
 void center_next_window(const Rect& place);

@@ -127,6 +127,11 @@ TracedFrame RenderWorker::trace(std::unique_ptr<Renderer>& renderer, const Rende
   FrameRequest request = job.request;
   request.pose = job.pose ? &*job.pose : nullptr;
   TracedFrame frame;
+  frame.technique = technique;
+  frame.width = request.width;
+  frame.height = request.height;
+  frame.camera = request.camera;
+  frame.moment = {request.at, job.pose};
   frame.stats = renderer->render(request);
   frame.structure_bytes = renderer->structure_bytes();
   frame.note = renderer->technique_note();

@@ -47,11 +47,7 @@ bool same_picture(const RenderJob& a, const RenderJob& b);
 bool outdates(const RenderJob& next, const RenderJob& old);
 
 /// What one technique made of a job.
-struct TracedFrame {
-  FrameStats stats;
-  std::size_t structure_bytes = 0;
-  std::string note;  ///< Technique::note()
-  HeatScale heat;
+struct TracedFrame : FrameReport {
   std::vector<std::uint32_t> pixels;  ///< sRGB RGBA, row 0 on top
 };
 

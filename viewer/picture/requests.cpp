@@ -11,12 +11,6 @@ namespace {
 /// Its boxes are of the current pose alone, whichever that is.
 constexpr const char* kUnlimitedTechnique = "refit-bvh";
 
-FrameReport report_of(const TracedFrame& frame, const RenderJob& job, std::size_t technique) {
-  const FrameRequest& request = job.request;
-  return {technique,  request.width, request.height, frame.stats,           frame.structure_bytes,
-          frame.note, frame.heat,    request.camera, {request.at, job.pose}};
-}
-
 constexpr double kFluentMs = 40;  // 25 pictures a second still follow the hand
 
 // A job of the view: neither technique nor moment belong to it.
@@ -63,9 +57,8 @@ bool note_costs(const FinishedFrame& frame, ViewState& state) {
     state.frames.add_work({job.technique, frame.stats.rays, frame.stats.counters});
     return false;
   }
-  state.frames.add(report_of(frame, job, job.technique));
-  if (frame.second)
-    state.frames.add_second(report_of(*frame.second, job, *job.against), frame.difference);
+  state.frames.add(frame);
+  if (frame.second) state.frames.add_second(*frame.second, frame.difference);
   return true;
 }
 

@@ -162,7 +162,7 @@ WindowShape Window::shape() const {
   int width = 0, height = 0;
   glfwGetWindowSize(window_, &width, &height);
   WindowShape shape{static_cast<float>(width), static_cast<float>(height)};
-  const int pixels = framebuffer_width();
+  const int pixels = framebuffer().width;
   if (width > 0 && pixels > 0) shape.pixel_ratio = static_cast<float>(pixels) / shape.width;
   float scale_x = 1, scale_y = 1;
   glfwGetWindowContentScale(window_, &scale_x, &scale_y);
@@ -170,16 +170,10 @@ WindowShape Window::shape() const {
   return shape;
 }
 
-int Window::framebuffer_width() const {
-  int width = 0, height = 0;
-  glfwGetFramebufferSize(window_, &width, &height);
-  return width;
-}
-
-int Window::framebuffer_height() const {
-  int width = 0, height = 0;
-  glfwGetFramebufferSize(window_, &width, &height);
-  return height;
+PixelRect Window::framebuffer() const {
+  PixelRect pixels;
+  glfwGetFramebufferSize(window_, &pixels.width, &pixels.height);
+  return pixels;
 }
 
 void Window::renew_fonts() {
@@ -188,7 +182,8 @@ void Window::renew_fonts() {
 }
 
 void Window::begin_frame() {
-  glViewport(0, 0, framebuffer_width(), framebuffer_height());
+  const PixelRect pixels = framebuffer();
+  glViewport(0, 0, pixels.width, pixels.height);
   const ImVec4& ground = ImGui::GetStyle().Colors[ImGuiCol_WindowBg];
   glClearColor(ground.x, ground.y, ground.z, 1);
   glClear(GL_COLOR_BUFFER_BIT);
@@ -204,7 +199,7 @@ void Window::end_frame() {
 }
 
 std::vector<std::uint32_t> Window::read_pixels() const {
-  const int width = framebuffer_width(), height = framebuffer_height();
+  const auto [left, top, width, height] = framebuffer();
   const auto row = static_cast<std::size_t>(width);
   std::vector<std::uint32_t> pixels(row * static_cast<std::size_t>(height));
   glPixelStorei(GL_PACK_ALIGNMENT, 4);

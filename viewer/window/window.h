@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "viewer/window/texture_blit.h"
+
 struct GLFWwindow;
 
 namespace mdk {
@@ -65,8 +67,7 @@ class Window {
 
   /// As it is now: the user, or a move to another display, may change any of it.
   WindowShape shape() const;
-  int framebuffer_width() const;
-  int framebuffer_height() const;
+  PixelRect framebuffer() const;
 
   /// ImGui's fonts are others than at the last frame.
   void renew_fonts();
