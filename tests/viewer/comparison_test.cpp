@@ -8,7 +8,7 @@
 #include "common/trace/technique.h"
 #include "formats/mdk_writer.h"
 #include "tests/viewer/waving_bar.h"
-#include "viewer/picture/picture_job.h"
+#include "viewer/picture/requests.h"
 #include "viewer/picture/shown_picture.h"
 
 namespace mdk {
@@ -107,13 +107,13 @@ TEST_F(ComparedFrames, TheStateKeepsTheTimesOfBoth) {
   const FinishedFrame both = frame();
   ViewState state;
   EXPECT_TRUE(note_costs(both, state));
-  ASSERT_TRUE(state.second_frame);
-  EXPECT_EQ(state.second_frame->technique, 2u);
-  EXPECT_EQ(state.second_frame->stats.hits, both.second->stats.hits);
-  EXPECT_EQ(state.difference->pixels, 0u);
+  ASSERT_TRUE(state.frames.second);
+  EXPECT_EQ(state.frames.second->technique, 2u);
+  EXPECT_EQ(state.frames.second->stats.hits, both.second->stats.hits);
+  EXPECT_EQ(state.frames.difference->pixels, 0u);
   job_.against.reset();
   EXPECT_TRUE(note_costs(frame(), state));
-  EXPECT_FALSE(state.second_frame);
+  EXPECT_FALSE(state.frames.second);
 }
 
 TEST_F(ComparedFrames, AShownPictureFollowsTheDividerWithoutATrace) {

@@ -1,6 +1,4 @@
 // Cost curves: measured from coarse to fine, kept per technique, begun anew where they would lie.
-#include "viewer/picture/cost_survey.h"
-
 #include <gtest/gtest.h>
 
 #include <numeric>
@@ -9,6 +7,7 @@
 #include "formats/mdk_writer.h"
 #include "tests/formats/temp_folder.h"
 #include "tests/viewer/waving_bar.h"
+#include "viewer/picture/requests.h"
 
 namespace mdk::test {
 namespace {
@@ -60,7 +59,7 @@ TEST(CostCurves, KeepTheLeastOfSeveralTimes) {
 TEST(CostCurves, SpreadOverLongClipsFromEndToEnd) {
   CostCurves costs;
   costs.start(evenly(10001));
-  EXPECT_EQ(costs.moments().size(), CostCurves::kMostMoments);
+  EXPECT_EQ(costs.moments().size(), CostCurves::kMaxMoments);
   EXPECT_EQ(costs.moments().front(), 0);
   EXPECT_EQ(costs.moments().back(), 10000);
   costs.start({});

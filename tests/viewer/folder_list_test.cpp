@@ -1,6 +1,4 @@
 // What a dropped folder offers.
-#include "viewer/scene/folder_list.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -10,6 +8,7 @@
 #include "common/base/error.h"
 #include "formats/file_kind.h"
 #include "tests/formats/temp_folder.h"
+#include "viewer/scene/file_list.h"
 
 namespace mdk::test {
 namespace {

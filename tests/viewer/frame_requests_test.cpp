@@ -12,8 +12,7 @@
 #include "formats/mdk_writer.h"
 #include "tests/viewer/waving_bar.h"
 #include "viewer/picture/render_worker.h"
-#include "viewer/picture/request_policy.h"
-#include "viewer/picture/resolution.h"
+#include "viewer/picture/requests.h"
 
 namespace mdk {
 namespace {

@@ -1,6 +1,4 @@
 // A skeleton posed by hand: limits are kept unless told otherwise, and past them no box is trusted.
-#include "viewer/state/hand_pose.h"
-
 #include <gtest/gtest.h>
 
 #include <memory>
@@ -10,7 +8,8 @@
 #include "formats/mdk_writer.h"
 #include "tests/formats/mdk/sample_model.h"
 #include "tests/formats/temp_folder.h"
-#include "viewer/picture/picture_job.h"
+#include "viewer/picture/requests.h"
+#include "viewer/state/pose.h"
 
 namespace mdk::test {
 namespace {
@@ -29,8 +28,8 @@ TEST(HandPose, WeightsRangeOverWhatTheClipsHave) {
   const ModelStorage storage = sample_skeleton_model();
   const std::vector<WeightRange> ranges = weight_ranges(storage.view());
   ASSERT_EQ(ranges.size(), 1u);
-  EXPECT_EQ(ranges[0].least, 0);
-  EXPECT_EQ(ranges[0].most, 2);
+  EXPECT_EQ(ranges[0].min, 0);
+  EXPECT_EQ(ranges[0].max, 2);
 }
 
 TEST(HandPose, TurnsAreShortenedToTheLimitUnlessTheyMayGoBeyond) {

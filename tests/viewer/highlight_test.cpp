@@ -1,6 +1,4 @@
 // Pixels that stand out in a picture that is there already.
-#include "viewer/picture/highlight.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -14,7 +14,7 @@
 #include "tests/formats/temp_folder.h"
 #include "tests/viewer/waving_bar.h"
 #include "tests/viewer/x_drop.h"
-#include "viewer/state/panel_tab.h"
+#include "viewer/state/settings.h"
 
 namespace mdk::test {
 namespace {

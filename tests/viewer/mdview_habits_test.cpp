@@ -205,17 +205,5 @@ TEST_F(MdviewGui, EveryPageStandsInTheSmallestWindow) {
     }
 }
 
-TEST_F(MdviewGui, SurvivesAFewHundredRandomEvents) {
-  write_text("bad.glb", "no model at all");
-  write_text("square.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n");
-  for (const char* seed : {"1", "2"}) {
-    const auto result =
-        start({"bar.mdk", "--size", "1000x700", "--random-events", "300", "--seed", seed})
-            ->finish();
-    EXPECT_EQ(result.status, 0) << "seed " << seed << ": " << result.messages;
-    EXPECT_GT(result.state["window_draws"], 100);
-  }
-}
-
 }  // namespace
 }  // namespace mdk::test

@@ -8,7 +8,7 @@
 #include "common/trace/renderer.h"
 #include "formats/mdk_view.h"
 #include "tests/viewer/mdview_gui.h"
-#include "viewer/scene/cluster_facts.h"
+#include "viewer/state/clusters.h"
 
 namespace mdk::test {
 namespace {

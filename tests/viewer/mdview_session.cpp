@@ -67,10 +67,10 @@ void MdviewSession::wait_for_window() {
 // What happened is seen and drawn before the next event, however busy the machine. While it plays
 // it never rests.
 void MdviewSession::let_it_draw() {
-  constexpr int kLeastMs = 160, kLookMs = 20, kMostLooks = 40;
-  pause_ms(kLeastMs);
+  constexpr int kMinMs = 160, kLookMs = 20, kMaxLooks = 40;
+  pause_ms(kMinMs);
   double before = -1;
-  for (int i = 0; i < kMostLooks; ++i) {
+  for (int i = 0; i < kMaxLooks; ++i) {
     const double now = process_->cpu_seconds();
     if (now == before && process_->asleep()) return;
     before = now;
@@ -110,12 +110,15 @@ void MdviewSession::wheel_up(Point at) {
 }
 
 void MdviewSession::xdotool(std::vector<std::string> words) {
+  EXPECT_EQ(try_xdotool(words), 0) << "xdotool " << words.front();
+}
+
+std::optional<int> MdviewSession::try_xdotool(std::vector<std::string> words) {
   ChildSetup setup;
   words.insert(words.begin(), "xdotool");
   setup.command = std::move(words);
   setup.display = display_;
-  ChildProcess hand(setup);
-  EXPECT_EQ(hand.wait(kPatience), 0) << "xdotool " << setup.command[1];
+  return ChildProcess(setup).wait(kPatience);
 }
 
 MdviewResult MdviewSession::finish() { return collect(*process_, folder_); }

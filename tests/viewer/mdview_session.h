@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -37,6 +38,8 @@ class MdviewSession {
   void drag(Point from, Point by, int button = 1);
   void wheel_up(Point at);
   void xdotool(std::vector<std::string> words);
+  /// As xdotool(), whether or not there is a window left for it; the program's exit status.
+  std::optional<int> try_xdotool(std::vector<std::string> words);
 
   bool running() { return process_->running(); }
   double cpu_seconds() const { return process_->cpu_seconds(); }

@@ -1,10 +1,10 @@
-#include "viewer/state/orbit_camera.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 #include <random>
+
+#include "viewer/state/camera.h"
 
 namespace mdk {
 namespace {

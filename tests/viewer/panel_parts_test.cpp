@@ -3,15 +3,17 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cctype>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <string>
+#include <utility>
 
-#include "viewer/commands.h"
-#include "viewer/panel/number_text.h"
-#include "viewer/state/frame_history.h"
+#include "viewer/app/state_report.h"
+#include "viewer/panel/commands.h"
+#include "viewer/panel/widgets.h"
+#include "viewer/state/costs.h"
 #include "viewer/state/layout.h"
-#include "viewer/state_report.h"
 #include "viewer/window/texture_blit.h"
 
 namespace mdk {
@@ -50,13 +52,21 @@ TEST(Letterbox, KeepsThePicturesShapeAndIsExactWhereSizesAgree) {
 }
 
 TEST(Commands, TheHelpListsEveryKeyAndNoKeyMeansTwoThings) {
-  std::string listed = " ";
-  for (const ShortcutHelp& line : shortcut_help()) listed += std::string(line.keys) + " ";
-  std::set<std::string> seen;
-  for (const std::string& key : bound_keys()) {
-    EXPECT_THAT(listed, testing::HasSubstr(" " + key + " "));
-    EXPECT_TRUE(seen.insert(key).second) << key << " is bound twice";
-  }
+  std::set<std::pair<int, unsigned>> seen;
+  for (const Shortcut& line : shortcuts())
+    for (const auto& [event, command] : line.bindings) {
+      EXPECT_TRUE(seen.insert({event.key, event.character}).second) << line.keys;
+      ASSERT_TRUE(action_for(event)) << line.keys;
+      EXPECT_EQ(action_for(event)->command, command) << line.keys;
+      if (event.character == 0) continue;
+      // A small letter is listed as the key's face shows it, a capital one with Shift.
+      const auto sign = static_cast<char>(event.character);
+      const bool is_capital = std::isupper(event.character) != 0;
+      const std::string name(1, static_cast<char>(std::toupper(event.character)));
+      EXPECT_THAT(std::string(" ") + line.keys + " ",
+                  testing::HasSubstr(std::string(is_capital ? " Shift + " : " ") + name + " "))
+          << sign;
+    }
   EXPECT_GT(seen.size(), 20u);
 }
 
@@ -120,10 +130,10 @@ TEST(StateReport, IsOneLineOfJsonThatTellsAbsentFromZero) {
   EXPECT_TRUE(json["error"].is_string());
 
   state.error.clear();
-  state.last_frame = FrameReport{};
-  state.last_frame->stats.trace_ms = 2;
-  state.last_frame->stats.shade_ms = 1;
-  state.last_work = WorkReport{0, 4, {8, 2, 0, 6}};
+  state.frames.last = FrameReport{};
+  state.frames.last->stats.trace_ms = 2;
+  state.frames.last->stats.shade_ms = 1;
+  state.frames.last_work = WorkReport{0, 4, {8, 2, 0, 6}};
   const auto full = nlohmann::json::parse(state_json(state, {}));
   EXPECT_TRUE(full["error"].is_null());
   EXPECT_EQ(full["last_frame"]["time_to_image_ms"], 3);

@@ -45,6 +45,27 @@ TEST(Playback, SpeedScalesTime) {
   EXPECT_EQ(playback.speed(), kMinSpeed);
 }
 
+TEST(Playback, PlayingEndsAtAClipOfOneKey) {
+  for (const LoopMode loop : {LoopMode::kOnce, LoopMode::kLoop, LoopMode::kPingPong}) {
+    Playback playback({{"walk", {0, 1}}, {"still", {0}}});
+    playback.set_loop(loop);
+    playback.play();
+    playback.set_clip(1);
+    EXPECT_FALSE(playback.advance(0.1));
+    EXPECT_EQ(playback.time(), 0);
+    EXPECT_FALSE(playback.playing());
+  }
+}
+
+TEST(Playback, PlayingEndsWhereTheClipHasOneKeyWhenTheFileIsLoadedAgain) {
+  Playback playback({{"walk", {0, 1}}});
+  playback.play();
+  playback.set_clips({{"still", {0}}});
+  EXPECT_FALSE(playback.advance(0.1));
+  EXPECT_EQ(playback.time(), 0);
+  EXPECT_FALSE(playback.playing());
+}
+
 TEST(Playback, LoopStartsOver) {
   Playback playback = two_clips();
   playback.play();

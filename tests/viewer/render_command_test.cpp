@@ -1,9 +1,8 @@
 // The command line copied from the viewer; that it gives the same pixels is tested in the window.
-#include "viewer/picture/render_command.h"
-
 #include <gtest/gtest.h>
 
 #include "common/trace/technique.h"
+#include "viewer/picture/export.h"
 
 namespace mdk {
 namespace {

@@ -1,6 +1,4 @@
 // What is remembered from run to run: kept whole, read back, and never a reason to fail.
-#include "viewer/saved_session.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -11,6 +9,7 @@
 #include <utility>
 
 #include "tests/formats/temp_folder.h"
+#include "viewer/app/session.h"
 
 namespace mdk::test {
 namespace {
@@ -83,9 +82,9 @@ TEST(SavedSession, TextIsNeverTooSmallOrTooLargeToBeSetBack) {
   }
   ViewSettings settings;
   settings.step_text_size(-100);
-  EXPECT_EQ(settings.text_percent, kLeastTextPercent);
+  EXPECT_EQ(settings.text_percent, kMinTextPercent);
   settings.step_text_size(1);
-  EXPECT_EQ(settings.text_percent, kLeastTextPercent + 10);
+  EXPECT_EQ(settings.text_percent, kMinTextPercent + 10);
 }
 
 TEST(SavedSession, AnyCutOfAGoodFileIsReadWithoutFailing) {
@@ -130,13 +129,13 @@ TEST(RecentFiles, AreNewestFirstEachOnceAndBounded) {
   for (int i = 0; i < 30; ++i)
     remember_file(recent, {std::string("/m/") + std::to_string(i) + ".mdk"});
   remember_file(recent, {"/m/./25.mdk"});
-  ASSERT_EQ(recent.size(), kMostRecentFiles);
+  ASSERT_EQ(recent.size(), kMaxRecentFiles);
   EXPECT_EQ(recent[0].paths, (std::vector<std::string>{"/m/25.mdk"}));
   EXPECT_EQ(recent[0].label, "25.mdk");
   EXPECT_EQ(recent[1].label, "29.mdk");
   EXPECT_EQ(std::ranges::count(recent, recent[0]), 1);
   remember_file(recent, {});
-  EXPECT_EQ(recent.size(), kMostRecentFiles);
+  EXPECT_EQ(recent.size(), kMaxRecentFiles);
 }
 
 }  // namespace

@@ -25,6 +25,12 @@ using testing::StartsWith;
 
 void write_text(const std::string& path, const std::string& text) { std::ofstream(path) << text; }
 
+/// As if it had been written later.
+void touch(const std::string& path) {
+  namespace fs = std::filesystem;
+  fs::last_write_time(path, fs::last_write_time(path) + std::chrono::seconds(5));
+}
+
 template <class Condition>
 bool soon(const Condition& condition) {
   for (int i = 0; i < 3000; ++i) {
@@ -62,7 +68,7 @@ TEST_F(SceneLoading, OpensABakedFile) {
   write_mdk(waving_bar().view(), path);
   const LoadedScene scene = load({path});
   ASSERT_TRUE(scene.file);
-  EXPECT_EQ(scene.path, path);
+  EXPECT_EQ(scene.paths, std::vector{path});
   EXPECT_FALSE(scene.is_again);
 }
 
@@ -72,7 +78,7 @@ TEST_F(SceneLoading, BakesASourceFileAndLeavesNothingBehind) {
   const LoadedScene scene = load({path});
   ASSERT_TRUE(scene.file) << scene.error->what();
   EXPECT_EQ(scene.file->model().triangle_count(), 2u);
-  EXPECT_EQ(scene.path, path);
+  EXPECT_EQ(scene.paths, std::vector{path});
   EXPECT_TRUE(std::filesystem::is_empty(scratch_));
 }
 
@@ -112,6 +118,72 @@ TEST_F(SceneLoading, AFileThatChangesIsLoadedAgainAndOneThatDoesNotIsNot) {
   EXPECT_TRUE(scene.is_again);
   ASSERT_TRUE(scene.file);
   EXPECT_EQ(scene.file->model().triangle_count(), 3u);
+}
+
+TEST_F(SceneLoading, WhatComesAfterItCouldNotBeOpenedIsOpenedAsIfAskedForAnew) {
+  const std::string path = folder_.file("bar.mdk");
+  EXPECT_TRUE(load({path}).error);
+  loader_.look_for_changes();
+  EXPECT_FALSE(loader_.busy());
+  write_mdk(waving_bar().view(), path);
+  loader_.look_for_changes();
+  LoadedScene scene = wait();
+  ASSERT_TRUE(scene.file);
+  EXPECT_FALSE(scene.is_again);
+  touch(path);
+  loader_.look_for_changes();
+  scene = wait();
+  ASSERT_TRUE(scene.file);
+  EXPECT_TRUE(scene.is_again);
+}
+
+TEST_F(SceneLoading, WhatIsOpenIsWatchedAfterAnotherFileCouldNotBeOpened) {
+  const std::string open = folder_.file("bar.mdk"), missing = folder_.file("missing.mdk");
+  write_mdk(waving_bar().view(), open);
+  ASSERT_TRUE(load({open}).file);
+  EXPECT_TRUE(load({missing}).error);
+  touch(open);
+  loader_.look_for_changes();
+  const LoadedScene scene = wait();
+  EXPECT_EQ(scene.paths, std::vector{open});
+  EXPECT_TRUE(scene.is_again);
+  loader_.look_for_changes();
+  EXPECT_FALSE(loader_.busy());
+}
+
+TEST_F(SceneLoading, ACancelledFileIsForgottenAndWhatIsOpenIsWatched) {
+  const std::string open = folder_.file("bar.mdk"), other = folder_.file("sheet.obj");
+  write_mdk(waving_bar().view(), open);
+  write_text(other, large_obj(400));
+  ASSERT_TRUE(load({open}).file);
+  loader_.load({other});
+  ASSERT_TRUE(soon([&] { return loader_.progress().has_value(); }));
+  loader_.cancel();
+  touch(other);
+  loader_.look_for_changes();
+  EXPECT_FALSE(loader_.busy());
+  touch(open);
+  loader_.look_for_changes();
+  const LoadedScene scene = wait();
+  EXPECT_EQ(scene.paths, std::vector{open});
+  EXPECT_TRUE(scene.is_again);
+}
+
+TEST_F(SceneLoading, GarbageOverWhatIsOpenIsSaidOnce) {
+  const std::string path = folder_.file("bar.mdk");
+  write_mdk(waving_bar().view(), path);
+  ASSERT_TRUE(load({path}).file);
+  write_text(path, "garbage");
+  loader_.look_for_changes();
+  EXPECT_TRUE(wait().error);
+  loader_.look_for_changes();
+  EXPECT_FALSE(loader_.busy());
+  std::filesystem::remove(path);
+  write_mdk(waving_bar().view(), path);
+  loader_.look_for_changes();
+  const LoadedScene scene = wait();
+  EXPECT_TRUE(scene.file);
+  EXPECT_TRUE(scene.is_again);
 }
 
 TEST(MdprepProgressText, IsReadFromTheBarAndFromNothingElse) {

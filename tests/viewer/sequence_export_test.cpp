@@ -1,6 +1,4 @@
 // Export of a clip: which keys, real pictures by the real mdprep, and a cancel that leaves nothing.
-#include "viewer/picture/sequence_export.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -10,6 +8,7 @@
 #include "formats/mdk_writer.h"
 #include "tests/formats/temp_folder.h"
 #include "tests/viewer/waving_bar.h"
+#include "viewer/picture/export.h"
 
 namespace mdk::test {
 namespace {

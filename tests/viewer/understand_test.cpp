@@ -7,11 +7,9 @@
 #include "common/trace/renderer.h"
 #include "common/trace/residuals.h"
 #include "tests/viewer/waving_bar.h"
-#include "viewer/scene/cluster_facts.h"
-#include "viewer/scene/partial_model.h"
-#include "viewer/state/cluster_view.h"
+#include "viewer/state/camera.h"
+#include "viewer/state/clusters.h"
 #include "viewer/state/pick.h"
-#include "viewer/state/projector.h"
 
 namespace mdk {
 namespace {

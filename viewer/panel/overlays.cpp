@@ -1,19 +1,23 @@
-#include "viewer/panel/overlays.h"
+// What may lie over the picture in boxes: welcome, bake, error, notice, file menu, keys, skeleton.
+#include <imgui.h>
+#include <imgui_stdlib.h>
 
 #include <algorithm>
+#include <array>
+#include <numbers>
 #include <string>
 
 #include "formats/file_kind.h"
-#include "viewer/panel/file_menu.h"
-#include "viewer/panel/ui_parts.h"
+#include "viewer/panel/panel.h"
+#include "viewer/panel/widgets.h"
 
 namespace mdk {
 namespace {
 
-constexpr ImGuiWindowFlags kFloating = ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize |
-                                       ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
-                                       ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoNav |
-                                       ImGuiWindowFlags_NoFocusOnAppearing;
+constexpr ImGuiWindowFlags kFloating =
+    kFixedBox | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoFocusOnAppearing;
+const ImVec2 kWidePadding{20, 16};
+constexpr double kDegree = std::numbers::pi / 180;
 
 constexpr float kHelpWidth = 580;  // on an ordinary display
 
@@ -38,8 +42,7 @@ void centered_text(const std::string& text, ImFont* font, ImU32 color) {
 }
 
 void draw_welcome(const Rect& picture, const Theme& theme) {
-  ImGui::SetNextWindowPos({picture.x + picture.width / 2, picture.y + picture.height / 2},
-                          ImGuiCond_Always, {0.5f, 0.5f});
+  center_next_window(picture);
   ImGui::SetNextWindowSize({std::min(picture.width, 560 * theme.scale), 0});
   ImGui::SetNextWindowBgAlpha(0);
   ImGui::Begin("##welcome", nullptr, kFloating | ImGuiWindowFlags_NoInputs);
@@ -61,14 +64,9 @@ void draw_welcome(const Rect& picture, const Theme& theme) {
 
 void draw_baking(const Rect& picture, const Theme& theme, const SceneLoader::Progress& baking,
                  UiResult& result) {
-  const float width = std::min(picture.width, 380 * theme.scale);
-  ImGui::SetNextWindowPos({picture.x + picture.width / 2, picture.y + picture.height / 2},
-                          ImGuiCond_Always, {0.5f, 0.5f});
-  ImGui::SetNextWindowSize({width, 0});
-  ImGui::PushStyleColor(ImGuiCol_WindowBg, floating_color());
-  ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 10 * theme.scale);
-  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(20 * theme.scale, 16 * theme.scale));
-  ImGui::Begin("##baking", nullptr, kFloating);
+  center_next_window(picture);
+  ImGui::SetNextWindowSize({std::min(picture.width, 380 * theme.scale), 0});
+  const FloatingBox box("##baking", theme, kFloating, kWidePadding);
   ImGui::PushFont(theme.fonts.strong);
   ImGui::TextUnformatted(("Baking " + baking.name).c_str());
   ImGui::PopFont();
@@ -81,18 +79,13 @@ void draw_baking(const Rect& picture, const Theme& theme, const SceneLoader::Pro
   ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - button);
   if (ImGui::Button("Cancel", {button, 0})) result.actions.push_back({Command::kCancelBake});
   record(result.widgets, "cancel-bake");
-  ImGui::End();
-  ImGui::PopStyleVar(2);
-  ImGui::PopStyleColor();
 }
 
 void draw_error(const Rect& picture, const Theme& theme, ViewState& state, UiResult& result) {
   const float margin = 14 * theme.scale;
   ImGui::SetNextWindowPos({picture.x + margin, picture.y + margin});
   ImGui::SetNextWindowSize({std::max(80.0f, picture.width - 2 * margin), 0});
-  ImGui::PushStyleColor(ImGuiCol_WindowBg, error_color());
-  ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 8 * theme.scale);
-  ImGui::Begin("##error", nullptr, kFloating);
+  const FloatingBox box("##error", theme, kFloating, {}, error_color());
   const float button = ImGui::GetFrameHeight();
   const float button_x = ImGui::GetWindowContentRegionMax().x - button;
   ImGui::PushTextWrapPos(button_x - margin);
@@ -101,25 +94,16 @@ void draw_error(const Rect& picture, const Theme& theme, ViewState& state, UiRes
   ImGui::PopTextWrapPos();
   record(result.widgets, "error");
   ImGui::SameLine(button_x);
-  const bool dismissed = ImGui::Button("x", {button, 0});
+  if (ImGui::Button("x", {button, 0})) state.error.clear();
   record(result.widgets, "dismiss-error");
-  ImGui::End();
-  ImGui::PopStyleVar();
-  ImGui::PopStyleColor();
-  if (dismissed) state.error.clear();
 }
 
 void draw_notice(const Rect& picture, const Theme& theme, const std::string& notice) {
   const float margin = 14 * theme.scale;
   ImGui::SetNextWindowPos({picture.x + margin, picture.y + picture.height - margin},
                           ImGuiCond_Always, {0, 1});
-  ImGui::PushStyleColor(ImGuiCol_WindowBg, floating_color());
-  ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 8 * theme.scale);
-  ImGui::Begin("##notice", nullptr, kFloating | ImGuiWindowFlags_NoInputs);
+  const FloatingBox box("##notice", theme, kFloating | ImGuiWindowFlags_NoInputs);
   ImGui::TextUnformatted(notice.c_str());
-  ImGui::End();
-  ImGui::PopStyleVar();
-  ImGui::PopStyleColor();
 }
 
 // In the middle of the picture where that is wide enough, else of the window; it scrolls where the
@@ -130,16 +114,13 @@ void draw_help(const Rect& picture, const Theme& theme, UiResult& result) {
   ImGui::SetNextWindowPos({fits ? picture.x + picture.width / 2 : window.x / 2, window.y / 2},
                           ImGuiCond_Always, {0.5f, 0.5f});
   ImGui::SetNextWindowSizeConstraints({0, 0}, {std::max(1.0f, window.x), std::max(1.0f, window.y)});
-  ImGui::PushStyleColor(ImGuiCol_WindowBg, floating_color());
-  ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 10 * theme.scale);
-  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(24 * theme.scale, 18 * theme.scale));
-  ImGui::Begin("##help", nullptr, kFloating);
+  const FloatingBox box("##help", theme, kFloating, {24, 18});
   ImGui::PushFont(theme.fonts.strong);
   ImGui::TextUnformatted("Keys and mouse");
   ImGui::PopFont();
   ImGui::Spacing();
   if (ImGui::BeginTable("##keys", 2, ImGuiTableFlags_SizingFixedFit)) {
-    for (const ShortcutHelp& line : shortcut_help()) {
+    for (const Shortcut& line : shortcuts()) {
       ImGui::TableNextColumn();
       ImGui::TextUnformatted(line.keys);
       ImGui::SameLine(0, 26 * theme.scale);
@@ -150,9 +131,137 @@ void draw_help(const Rect& picture, const Theme& theme, UiResult& result) {
   }
   const ImVec2 corner = ImGui::GetWindowPos(), size = ImGui::GetWindowSize();
   result.widgets["help-overlay"] = {corner.x, corner.y, size.x, size.y};
-  ImGui::End();
-  ImGui::PopStyleVar(2);
-  ImGui::PopStyleColor();
+}
+
+void draw_choices(const Theme& theme, const FileMenu& menu, UiResult& result) {
+  const float line = ImGui::GetTextLineHeightWithSpacing() * 2;
+  const float rows = std::min(6.0f, static_cast<float>(menu.choices.size()));
+  ImGui::BeginChild("##choices", {0, rows * line});
+  for (std::size_t i = 0; i < menu.choices.size(); ++i) {
+    const FileChoice& choice = menu.choices[i];
+    ImGui::PushID(static_cast<int>(i));
+    const ImVec2 corner = ImGui::GetCursorScreenPos();
+    if (ImGui::Selectable("##choice", false, 0, {0, line - ImGui::GetStyle().ItemSpacing.y}))
+      result.open_paths = choice.paths;
+    ImGui::PopID();
+    record(result.widgets, "choice:" + std::to_string(i));
+    ImDrawList& draw = *ImGui::GetWindowDrawList();
+    draw.AddText({corner.x + 4 * theme.scale, corner.y}, text_color(), choice.label.c_str());
+    draw.AddText({corner.x + 4 * theme.scale, corner.y + ImGui::GetTextLineHeight()}, dim_color(),
+                 choice.paths.front().c_str());
+  }
+  ImGui::EndChild();
+}
+
+void draw_file_menu(const Rect& picture, const Theme& theme, ViewState& state, UiResult& result) {
+  FileMenu& menu = *state.file_menu;
+  center_next_window(picture);
+  ImGui::SetNextWindowSize({std::min(picture.width, 560 * theme.scale), 0});
+  const FloatingBox box("##file-menu", theme, kFixedBox, kWidePadding);
+  ImGui::PushFont(theme.fonts.strong);
+  ImGui::TextUnformatted(menu.title.c_str());
+  ImGui::PopFont();
+  record(result.widgets, "file-menu");
+  if (menu.choices.empty())
+    ImGui::TextDisabled("None yet. Drop an animation or a folder of them on the window, or type:");
+  else
+    draw_choices(theme, menu, result);
+  const float button = 80 * theme.scale;
+  ImGui::SetNextItemWidth(-2 * (button + ImGui::GetStyle().ItemSpacing.x));
+  if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
+  bool typed = ImGui::InputTextWithHint("##path", "path of a file or folder", &menu.typed,
+                                        ImGuiInputTextFlags_EnterReturnsTrue);
+  record(result.widgets, "open-path");
+  ImGui::SameLine();
+  typed |= ImGui::Button("Open", {button, 0});
+  record(result.widgets, "open-typed");
+  ImGui::SameLine();
+  // The text field has the keyboard, so that no shortcut sees the key.
+  const bool closed = ImGui::Button("Close", {button, 0}) ||
+                      ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape), false);
+  record(result.widgets, "close-file-menu");
+  if (typed && !menu.typed.empty()) result.open_paths = {menu.typed};
+  if (closed || !result.open_paths.empty()) state.file_menu.reset();
+}
+
+int depth_of(const SkeletonView& skeleton, std::uint32_t joint) {
+  int depth = 0;
+  for (std::uint32_t j = skeleton.joints[joint].parent; j != kNoParent;
+       j = skeleton.joints[j].parent)
+    ++depth;
+  return depth;
+}
+
+void draw_joints(const SkeletonView& skeleton, const Theme& theme, HandPose& hand,
+                 UiResult& result) {
+  const auto count = static_cast<std::uint32_t>(skeleton.joints.size());
+  const float rows = std::min(9.0f, static_cast<float>(count));
+  ImGui::BeginChild("##joints", {0, rows * ImGui::GetTextLineHeightWithSpacing()});
+  for (std::uint32_t j = 0; j < count; ++j) {
+    ImGui::PushID(static_cast<int>(j));
+    const float indent = static_cast<float>(depth_of(skeleton, j)) * 9 * theme.scale;
+    ImGui::SetCursorPosX(ImGui::GetCursorPosX() + indent);
+    const bool turned = length(hand.pose.turns[j]) > 0;
+    if (!turned) ImGui::PushStyleColor(ImGuiCol_Text, dim_color());
+    if (ImGui::Selectable(joint_name(skeleton, j).c_str(), hand.joint == j)) hand.joint = j;
+    if (!turned) ImGui::PopStyleColor();
+    record(result.widgets, "joint:" + joint_name(skeleton, j));
+    ImGui::PopID();
+  }
+  ImGui::EndChild();
+}
+
+void draw_turn(const SkeletonView& skeleton, HandPose& hand, UiResult& result) {
+  const double limit = static_cast<double>(skeleton.joints[hand.joint].limit) / kDegree;
+  const auto reach = static_cast<float>(hand.beyond_limits ? 180.0 : limit);
+  const Vec3d turn = hand.pose.turns[hand.joint] * (1 / kDegree);
+  std::array<float, 3> degrees = {static_cast<float>(turn.x), static_cast<float>(turn.y),
+                                  static_cast<float>(turn.z)};
+  ImGui::TextDisabled("about its own axes, at most %.0f°", limit);
+  bool changed = false;
+  constexpr std::array<const char*, 3> kAxes = {"x", "y", "z"};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    ImGui::SetNextItemWidth(-ImGui::GetFontSize() * 1.2f);
+    changed |= ImGui::SliderFloat(kAxes[axis], &degrees[axis], -reach, reach, "%.1f°",
+                                  ImGuiSliderFlags_AlwaysClamp);
+    record(result.widgets, std::string("turn:") + kAxes[axis]);
+  }
+  if (changed)
+    turn_joint(hand, skeleton,
+               Vec3d{static_cast<double>(degrees[0]), static_cast<double>(degrees[1]),
+                     static_cast<double>(degrees[2])} *
+                   kDegree);
+}
+
+void draw_weights(const Model& model, HandPose& hand, UiResult& result) {
+  const std::vector<WeightRange> ranges = weight_ranges(model);
+  for (std::size_t t = 0; t < ranges.size(); ++t) {
+    const std::string name = "morph " + std::to_string(t);
+    ImGui::SetNextItemWidth(-ImGui::GetFontSize() * 5);
+    ImGui::SliderFloat(name.c_str(), &hand.pose.target_weights[t], ranges[t].min, ranges[t].max,
+                       "%.2f", ImGuiSliderFlags_AlwaysClamp);
+    record(result.widgets, name);
+  }
+}
+
+void draw_limits(const SkeletonView& skeleton, HandPose& hand, UiResult& result) {
+  if (ImGui::Checkbox("Beyond limits", &hand.beyond_limits) && !hand.beyond_limits)
+    for (std::uint32_t j = 0; j < skeleton.joints.size(); ++j) {
+      HandPose back = hand;
+      back.joint = j;
+      turn_joint(back, skeleton, hand.pose.turns[j]);
+      hand.pose.turns[j] = back.pose.turns[j];
+    }
+  record(result.widgets, "beyond-limits");
+  const std::uint32_t past = joint_past_limit(skeleton, hand.pose);
+  if (past == kNoParent) return;
+  ImGui::PushTextWrapPos(0);
+  colored_text(warning_color(),
+               joint_name(skeleton, past) +
+                   " is past its limit: the fuzzy boxes do not hold here, the picture is traced "
+                   "with boxes of this pose alone (Refitted BVH)");
+  ImGui::PopTextWrapPos();
+  record(result.widgets, "past-limit");
 }
 
 }  // namespace
@@ -163,8 +272,33 @@ void draw_overlays(const Rect& picture, const Theme& theme, ViewState& state, Ui
   if (state.baking) draw_baking(picture, theme, *state.baking, result);
   if (!state.error.empty()) draw_error(picture, theme, state, result);
   if (!state.notice.empty()) draw_notice(picture, theme, state.notice);
-  draw_file_menu(picture, theme, state, result);
+  if (state.file_menu) draw_file_menu(picture, theme, state, result);
   if (state.help_open) draw_help(picture, theme, result);
+}
+
+void draw_pose_panel(const Rect& picture, const Theme& theme, ViewState& state, UiResult& result) {
+  const Model* model = state.model();
+  if (!model || model->skeleton.joints.empty()) return;
+  const float margin = 14 * theme.scale;
+  ImGui::SetNextWindowPos({picture.x + margin, picture.y + margin}, ImGuiCond_FirstUseEver);
+  ImGui::SetNextWindowSize({250 * theme.scale, 0});
+  const FloatingBox box("Skeleton", theme,
+                        ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoSavedSettings |
+                            ImGuiWindowFlags_AlwaysAutoResize |
+                            ImGuiWindowFlags_NoFocusOnAppearing);
+  HandPose& hand = state.hand;
+  checkbox("Pose by hand", hand.active, result.widgets, "pose-by-hand");
+  if (hand.active) {
+    ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - 60 * theme.scale);
+    if (ImGui::Button("Rest", {60 * theme.scale, 0})) hand.pose = rest_pose_of(*model).pose;
+    record(result.widgets, "pose-rest");
+    draw_joints(model->skeleton, theme, hand, result);
+    draw_turn(model->skeleton, hand, result);
+    draw_weights(*model, hand, result);
+    draw_limits(model->skeleton, hand, result);
+  } else {
+    ImGui::TextDisabled("%zu joints; shown is the clip", model->skeleton.joints.size());
+  }
 }
 
 }  // namespace mdk

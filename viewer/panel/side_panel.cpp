@@ -1,18 +1,15 @@
-#include "viewer/panel/side_panel.h"
-
+// The side panel: header, tab bar, the open page, and the last frame below it.
 #include <algorithm>
-#include <array>
 #include <string>
 
-#include "viewer/panel/frame_charts.h"
-#include "viewer/panel/number_text.h"
+#include "viewer/panel/charts.h"
 #include "viewer/panel/tabs.h"
-#include "viewer/panel/ui_parts.h"
+#include "viewer/panel/widgets.h"
 
 namespace mdk {
 namespace {
 
-constexpr float kLeastPageHeight = 160, kGoodPageHeight = 240;
+constexpr float kMinPageHeight = 160, kGoodPageHeight = 240;
 constexpr float kFooterHeight = 176, kShortFooterHeight = 72;  // without a note
 
 void draw_header(const Theme& theme, const ViewState& state, UiResult& result) {
@@ -24,8 +21,7 @@ void draw_header(const Theme& theme, const ViewState& state, UiResult& result) {
   if (state.file && ImGui::IsItemHovered()) ImGui::SetTooltip("%s", state.path.c_str());
   ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - help_width);
   if (ImGui::Button("?", {help_width, 0})) result.actions.push_back({Command::kToggleHelp});
-  record(result.widgets, "help");
-  if (ImGui::IsItemHovered()) ImGui::SetTooltip("Keys and mouse");
+  record(result.widgets, "help", "Keys and mouse");
 }
 
 // Tabs share the width: each gets its label's and an equal part of what is left.
@@ -78,8 +74,8 @@ void draw_page(const Theme& theme, ViewState& state, UiResult& result) {
 
 // What the technique chose, where it chooses.
 std::string note_of(const ViewState& state) {
-  if (!state.last_frame || state.last_frame->note.empty()) return {};
-  return "Chosen: " + state.last_frame->note;
+  if (!state.frames.last || state.frames.last->note.empty()) return {};
+  return "Chosen: " + state.frames.last->note;
 }
 
 float note_height(const std::string& note) {
@@ -89,16 +85,16 @@ float note_height(const std::string& note) {
          ImGui::GetStyle().ItemSpacing.y;
 }
 
-/// Where there is little room, the page needs it more than the charts do.
+/// Where there is little space, the page needs it more than the charts do.
 enum class Footer { kWhole, kShort };
 
 void draw_footer(const Theme& theme, const ViewState& state, Footer footer, UiResult& result) {
   heading(theme, "LAST FRAME");
-  if (!state.last_frame) {
+  if (!state.frames.last) {
     ImGui::TextDisabled("none yet");
     return;
   }
-  const FrameStats& stats = state.last_frame->stats;
+  const FrameStats& stats = state.frames.last->stats;
   ImGui::PushFont(theme.fonts.large);
   ImGui::TextUnformatted(milliseconds_text(stats.time_to_image_ms()).c_str());
   ImGui::PopFont();
@@ -111,31 +107,20 @@ void draw_footer(const Theme& theme, const ViewState& state, Footer footer, UiRe
   else
     ImGui::TextDisabled("at rest");
   ImGui::EndGroup();
-  const std::array<FrameStage, 4> stages = {FrameStage{"pose", stats.pose_ms},
-                                            {"update", stats.update_ms},
-                                            {"trace", stats.trace_ms},
-                                            {"shade", stats.shade_ms}};
-  if (footer == Footer::kWhole) draw_stage_bar(theme, stages);
+  if (footer == Footer::kWhole) draw_stage_bar(theme, stats);
   if (const std::string note = note_of(state); !note.empty()) {
-    ImGui::PushTextWrapPos(0);
-    ImGui::TextDisabled("%s", note.c_str());
-    ImGui::PopTextWrapPos();
+    dim_paragraph(note);
     record(result.widgets, "chosen");
   }
   if (footer == Footer::kShort) return;
-  draw_history_plot(theme, state.history);
+  draw_history_plot(theme, state.frames.history);
   record(result.widgets, "history");
 }
 
 }  // namespace
 
 void draw_side_panel(const Rect& place, const Theme& theme, ViewState& state, UiResult& result) {
-  ImGui::SetNextWindowPos({place.x, place.y});
-  ImGui::SetNextWindowSize({place.width, place.height});
-  ImGui::Begin("##side", nullptr,
-               ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
-                   ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoBringToFrontOnFocus |
-                   ImGuiWindowFlags_NoNav);
+  begin_docked("##side", place);
   draw_header(theme, state, result);
   draw_tab_bar(theme, state, result);
 
@@ -144,7 +129,7 @@ void draw_side_panel(const Rect& place, const Theme& theme, ViewState& state, Ui
   const bool has_room = room >= (kGoodPageHeight + kFooterHeight) * theme.scale;
   const Footer footer = has_room ? Footer::kWhole : Footer::kShort;
   const float footer_height = (has_room ? kFooterHeight : kShortFooterHeight) * theme.scale;
-  const float height = std::max(kLeastPageHeight * theme.scale, room - footer_height);
+  const float height = std::max(kMinPageHeight * theme.scale, room - footer_height);
   // A page of its own for each tab, so that each keeps its place.
   ImGui::BeginChild(std::string(panel_tab_id(state.tab)).c_str(), {0, height});
   draw_page(theme, state, result);

@@ -2,8 +2,6 @@
 
 #include <array>
 
-#include "viewer/window/font_book.h"
-
 namespace mdk {
 namespace {
 
@@ -18,45 +16,30 @@ constexpr ImGuiCol kSunkenSlot = ImGuiCol_MenuBarBg, kLineSlot = ImGuiCol_TableB
                    kErrorSlot = ImGuiCol_DragDropTarget,
                    kWarningSlot = ImGuiCol_PlotHistogramHovered, kFloatingSlot = ImGuiCol_PopupBg;
 
-void set_dark_colors(ImVec4* c) {
-  c[ImGuiCol_Text] = rgb(226, 230, 238);
-  c[ImGuiCol_TextDisabled] = rgb(139, 147, 163);
-  c[ImGuiCol_WindowBg] = rgb(24, 26, 33);
-  c[ImGuiCol_Border] = rgb(255, 255, 255, 0.07f);
-  c[ImGuiCol_FrameBg] = rgb(41, 45, 56);
-  c[ImGuiCol_FrameBgHovered] = rgb(50, 55, 69);
-  c[ImGuiCol_FrameBgActive] = rgb(57, 63, 80);
-  c[ImGuiCol_Button] = rgb(41, 45, 56);
-  c[ImGuiCol_ButtonHovered] = rgb(54, 60, 76);
-  c[ImGuiCol_ButtonActive] = rgb(66, 74, 95);
-  c[ImGuiCol_CheckMark] = rgb(92, 160, 255);
-  c[ImGuiCol_ScrollbarGrab] = rgb(64, 70, 86);
-  c[kSunkenSlot] = rgb(16, 18, 23);
-  c[kLineSlot] = rgb(255, 255, 255, 0.09f);
-  c[kErrorSlot] = rgb(122, 38, 44, 0.96f);
-  c[kWarningSlot] = rgb(240, 190, 90);
-  c[kFloatingSlot] = rgb(30, 33, 41, 0.97f);
-}
+struct SchemeColor {
+  ImGuiCol slot;
+  ImVec4 dark, light;
+};
 
-void set_light_colors(ImVec4* c) {
-  c[ImGuiCol_Text] = rgb(30, 34, 43);
-  c[ImGuiCol_TextDisabled] = rgb(98, 106, 122);
-  c[ImGuiCol_WindowBg] = rgb(240, 242, 246);
-  c[ImGuiCol_Border] = rgb(0, 0, 0, 0.14f);
-  c[ImGuiCol_FrameBg] = rgb(218, 222, 230);
-  c[ImGuiCol_FrameBgHovered] = rgb(207, 213, 224);
-  c[ImGuiCol_FrameBgActive] = rgb(196, 203, 217);
-  c[ImGuiCol_Button] = rgb(218, 222, 230);
-  c[ImGuiCol_ButtonHovered] = rgb(203, 209, 221);
-  c[ImGuiCol_ButtonActive] = rgb(186, 195, 212);
-  c[ImGuiCol_CheckMark] = rgb(26, 104, 214);
-  c[ImGuiCol_ScrollbarGrab] = rgb(178, 186, 200);
-  c[kSunkenSlot] = rgb(226, 229, 236);
-  c[kLineSlot] = rgb(0, 0, 0, 0.12f);
-  c[kErrorSlot] = rgb(250, 208, 208, 0.97f);
-  c[kWarningSlot] = rgb(160, 92, 0);
-  c[kFloatingSlot] = rgb(250, 251, 253, 0.97f);
-}
+const std::array kSchemeColors = {
+    SchemeColor{ImGuiCol_Text, rgb(226, 230, 238), rgb(30, 34, 43)},
+    SchemeColor{ImGuiCol_TextDisabled, rgb(139, 147, 163), rgb(98, 106, 122)},
+    SchemeColor{ImGuiCol_WindowBg, rgb(24, 26, 33), rgb(240, 242, 246)},
+    SchemeColor{ImGuiCol_Border, rgb(255, 255, 255, 0.07f), rgb(0, 0, 0, 0.14f)},
+    SchemeColor{ImGuiCol_FrameBg, rgb(41, 45, 56), rgb(218, 222, 230)},
+    SchemeColor{ImGuiCol_FrameBgHovered, rgb(50, 55, 69), rgb(207, 213, 224)},
+    SchemeColor{ImGuiCol_FrameBgActive, rgb(57, 63, 80), rgb(196, 203, 217)},
+    SchemeColor{ImGuiCol_Button, rgb(41, 45, 56), rgb(218, 222, 230)},
+    SchemeColor{ImGuiCol_ButtonHovered, rgb(54, 60, 76), rgb(203, 209, 221)},
+    SchemeColor{ImGuiCol_ButtonActive, rgb(66, 74, 95), rgb(186, 195, 212)},
+    SchemeColor{ImGuiCol_CheckMark, rgb(92, 160, 255), rgb(26, 104, 214)},
+    SchemeColor{ImGuiCol_ScrollbarGrab, rgb(64, 70, 86), rgb(178, 186, 200)},
+    SchemeColor{kSunkenSlot, rgb(16, 18, 23), rgb(226, 229, 236)},
+    SchemeColor{kLineSlot, rgb(255, 255, 255, 0.09f), rgb(0, 0, 0, 0.12f)},
+    SchemeColor{kErrorSlot, rgb(122, 38, 44, 0.96f), rgb(250, 208, 208, 0.97f)},
+    SchemeColor{kWarningSlot, rgb(240, 190, 90), rgb(160, 92, 0)},
+    SchemeColor{kFloatingSlot, rgb(30, 33, 41, 0.97f), rgb(250, 251, 253, 0.97f)},
+};
 
 ImU32 darker(ImU32 color) {
   ImVec4 c = ImGui::ColorConvertU32ToFloat4(color);
@@ -99,13 +82,9 @@ Theme make_theme(float scale, float pixel_ratio) {
 
 void set_colors(ColorScheme scheme) {
   ImVec4* c = ImGui::GetStyle().Colors;
-  if (scheme == ColorScheme::kDark) {
-    ImGui::StyleColorsDark();
-    set_dark_colors(c);
-  } else {
-    ImGui::StyleColorsLight();
-    set_light_colors(c);
-  }
+  const bool dark = scheme == ColorScheme::kDark;
+  dark ? ImGui::StyleColorsDark() : ImGui::StyleColorsLight();
+  for (const SchemeColor& color : kSchemeColors) c[color.slot] = dark ? color.dark : color.light;
   const ImVec4 accent = c[ImGuiCol_CheckMark];
   const auto see_through = [&](float alpha) { return ImVec4(accent.x, accent.y, accent.z, alpha); };
   c[ImGuiCol_ChildBg] = c[ImGuiCol_ScrollbarBg] = {0, 0, 0, 0};

@@ -5,15 +5,10 @@
 
 #include <cstddef>
 
-#include "viewer/state/color_scheme.h"
+#include "viewer/state/settings.h"
+#include "viewer/window/fonts.h"
 
 namespace mdk {
-
-struct Fonts {
-  ImFont* text = nullptr;
-  ImFont* strong = nullptr;
-  ImFont* large = nullptr;
-};
 
 /// What every panel function draws with.
 struct Theme {

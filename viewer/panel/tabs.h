@@ -1,9 +1,9 @@
-// The pages of the side panel, one file each. Choices act on the state at once, the rest is asked
+// The pages of the side panel. Choices act on the state at once, the rest is asked
 // for in the result.
 #pragma once
 
 #include "viewer/panel/style.h"
-#include "viewer/panel/ui_result.h"
+#include "viewer/panel/widgets.h"
 #include "viewer/state/view_state.h"
 
 namespace mdk {
@@ -14,7 +14,7 @@ void draw_view_tab(const Theme& theme, ViewState& state, UiResult& result);
 /// What the last frame cost, and what every technique tried so far costs.
 void draw_cost_tab(const Theme& theme, ViewState& state, UiResult& result);
 
-/// A second technique held against the first.
+/// A second technique compared with the first.
 void draw_compare_tab(const Theme& theme, ViewState& state, UiResult& result);
 
 /// Boxes over the picture, and the list of clusters with solo and hide.

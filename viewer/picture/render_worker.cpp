@@ -5,14 +5,13 @@
 
 #include "common/base/parallel.h"
 #include "common/trace/technique.h"
-#include "viewer/picture/comparison.h"
-#include "viewer/picture/highlight.h"
+#include "viewer/picture/shown_picture.h"
 
 namespace mdk {
 namespace {
 
 /// Thrown through the loops over a frame. Not an error: nobody waits for it.
-struct LeftOff {};
+struct Abandoned {};
 
 }  // namespace
 
@@ -24,13 +23,12 @@ bool same_picture(const RenderJob& a, const RenderJob& b) {
          a.request.occlusion_rays == b.request.occlusion_rays && a.pose == b.pose;
 }
 
-bool outdates(const RenderJob& wanted, const RenderJob& old) {
+bool outdates(const RenderJob& next, const RenderJob& old) {
   const auto pixels = [](const RenderJob& job) {
     return std::uint64_t{job.request.width} * job.request.height;
   };
-  return wanted.file != old.file || wanted.technique != old.technique ||
-         wanted.against != old.against || wanted.part != old.part || pixels(wanted) < pixels(old) ||
-         (old.survey && !wanted.survey);
+  return next.file != old.file || next.technique != old.technique || next.against != old.against ||
+         next.part != old.part || pixels(next) < pixels(old) || (old.survey && !next.survey);
 }
 
 RenderWorker::RenderWorker(std::function<void()> on_finished)
@@ -87,7 +85,7 @@ void RenderWorker::run() {
 }
 
 void RenderWorker::check() const {
-  if (stopping_ || (outdated_ && since_begun_.seconds() > kPatienceSeconds)) throw LeftOff{};
+  if (stopping_ || (outdated_ && since_begun_.seconds() > kPatienceSeconds)) throw Abandoned{};
 }
 
 std::optional<FinishedFrame> RenderWorker::render(RenderJob job) {
@@ -107,7 +105,7 @@ std::optional<FinishedFrame> RenderWorker::render(RenderJob job) {
       frame.difference = difference_of(
           {frame.pixels, frame.second->pixels, job.request.width, job.request.height});
     }
-  } catch (const LeftOff&) {
+  } catch (const Abandoned&) {
     drop_renderers();
     return {};
   } catch (const std::exception& failure) {
@@ -132,6 +130,11 @@ TracedFrame RenderWorker::trace(std::unique_ptr<Renderer>& renderer, const Rende
   FrameRequest request = job.request;
   request.pose = job.pose ? &*job.pose : nullptr;
   TracedFrame frame;
+  frame.technique = technique;
+  frame.width = request.width;
+  frame.height = request.height;
+  frame.camera = request.camera;
+  frame.moment = {request.at, job.pose};
   frame.stats = renderer->render(request);
   frame.structure_bytes = renderer->structure_bytes();
   frame.note = renderer->technique_note();

@@ -16,8 +16,8 @@
 #include "common/base/stopwatch.h"
 #include "common/trace/renderer.h"
 #include "formats/mdk_view.h"
-#include "viewer/scene/partial_model.h"
-#include "viewer/state/compare.h"
+#include "viewer/state/clusters.h"
+#include "viewer/state/costs.h"
 
 namespace mdk {
 
@@ -27,7 +27,7 @@ struct SurveyMark {
   std::size_t moment = 0;
 };
 
-/// A picture that is wanted: of which file, how, of what.
+/// A picture to make: of which file, how, of what.
 struct RenderJob {
   std::shared_ptr<const MdkFile> file;
   std::size_t technique = 0;                 ///< row of technique_table()
@@ -41,17 +41,13 @@ struct RenderJob {
 /// Whether both ask for the same pixels by the same technique; counting does not matter.
 bool same_picture(const RenderJob& a, const RenderJob& b);
 
-/// Whether nobody waits for `old` any more where `wanted` is asked for: another technique, file or
+/// Whether nobody waits for `old` any more where `next` is asked for: another technique, file or
 /// part of it, a coarser picture, or any picture in place of a measurement. Another moment or
 /// camera is no reason: while these change without end, late pictures are better than none.
-bool outdates(const RenderJob& wanted, const RenderJob& old);
+bool outdates(const RenderJob& next, const RenderJob& old);
 
 /// What one technique made of a job.
-struct TracedFrame {
-  FrameStats stats;
-  std::size_t structure_bytes = 0;
-  std::string note;  ///< Technique::note()
-  HeatScale heat;
+struct TracedFrame : FrameReport {
   std::vector<std::uint32_t> pixels;  ///< sRGB RGBA, row 0 on top
 };
 
@@ -65,17 +61,17 @@ struct FinishedFrame : TracedFrame {
 
 class RenderWorker {
  public:
-  /// How long an outdated frame may go on: to begin another costs its structures anew.
+  /// How long an outdated frame may go on: another one has to build its structures again.
   static constexpr double kPatienceSeconds = 0.2;
 
   /// `on_finished` is called from the worker's thread whenever a frame can be taken.
   explicit RenderWorker(std::function<void()> on_finished);
-  /// Leaves off the frame in work.
+  /// Abandons the frame in work.
   ~RenderWorker();
   RenderWorker(const RenderWorker&) = delete;
   RenderWorker& operator=(const RenderWorker&) = delete;
 
-  /// Starts the job when the present one is done, or outdated and late; takes the place of one that
+  /// Starts the job when the current one is done, or outdated and late; takes the place of one that
   /// has not started.
   void request(RenderJob job);
 
@@ -87,11 +83,11 @@ class RenderWorker {
 
  private:
   void run();
-  /// None where it was left off.
+  /// None where it was abandoned.
   std::optional<FinishedFrame> render(RenderJob job);
-  /// Ends loops over a frame that is to be left off.
+  /// Ends loops over a frame that is to be abandoned.
   void check() const;
-  /// They begin anew with the next frame, whatever state they were left in.
+  /// They start again with the next frame, whatever state they were left in.
   void drop_renderers();
   /// By the renderer's own pose, so that both techniques of a comparison pay for one.
   TracedFrame trace(std::unique_ptr<Renderer>& renderer, const RenderJob& job,

@@ -11,6 +11,7 @@
 #include <cerrno>
 #include <charconv>
 #include <csignal>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <string_view>
@@ -22,11 +23,13 @@ extern char** environ;
 namespace mdk {
 namespace {
 
+namespace fs = std::filesystem;
+
 constexpr int kNiceness = 5;  // the picture comes first
 
 std::string mdprep_program() {
   std::error_code failure;
-  const auto self = std::filesystem::read_symlink("/proc/self/exe", failure);
+  const auto self = fs::read_symlink("/proc/self/exe", failure);
   const auto beside = self.parent_path() / "mdprep";
   return !failure && ::access(beside.c_str(), X_OK) == 0 ? beside.string() : "mdprep";
 }
@@ -137,6 +140,20 @@ void MdprepProcess::stop() { send(SIGTERM); }
 void MdprepProcess::send(int signal_number) {
   const std::lock_guard lock(mutex_);
   if (pid_ > 0) ::kill(pid_, signal_number);
+}
+
+ScratchFolder::ScratchFolder() : path_((fs::temp_directory_path() / "mdview-XXXXXX").string()) {
+  if (!::mkdtemp(path_.data()))
+    throw Error(ErrorCode::kIo, path_ + ": cannot be made: " + std::strerror(errno));
+}
+
+ScratchFolder::~ScratchFolder() {
+  std::error_code ignored;
+  fs::remove_all(path_, ignored);
+}
+
+std::string ScratchFolder::file(const std::string& name) const {
+  return (fs::path(path_) / name).string();
 }
 
 }  // namespace mdk

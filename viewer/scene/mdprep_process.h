@@ -1,5 +1,5 @@
 // MdprepProcess: mdprep at work in a process of its own: no file, however bad, can end the viewer,
-// and work can be dropped at any moment.
+// and work can be dropped at any moment. ScratchFolder: for files that only the two of them know.
 #pragma once
 
 #include <sys/types.h>
@@ -51,5 +51,20 @@ class MdprepProcess {
 
 /// What a piece of mdprep's stderr says of progress: "[####----]  42 %  build"; else nothing.
 std::optional<MdprepProgress> parse_mdprep_progress(std::string_view line);
+
+/// A new folder for temporary files, taken away at the end.
+class ScratchFolder {
+ public:
+  /// Throws Error (kIo) where it cannot be made.
+  ScratchFolder();
+  ~ScratchFolder();
+  ScratchFolder(const ScratchFolder&) = delete;
+  ScratchFolder& operator=(const ScratchFolder&) = delete;
+
+  std::string file(const std::string& name) const;
+
+ private:
+  std::string path_;
+};
 
 }  // namespace mdk

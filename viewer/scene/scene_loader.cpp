@@ -1,12 +1,7 @@
 #include "viewer/scene/scene_loader.h"
 
-#include <cerrno>
-#include <chrono>
-#include <cstdlib>
-#include <cstring>
 #include <utility>
 
-#include "common/base/parallel.h"
 #include "formats/file_kind.h"
 
 namespace mdk {
@@ -14,32 +9,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A folder for one file that is mapped at once and need not have a name any longer.
-class ScratchFolder {
- public:
-  ScratchFolder() : path_((fs::temp_directory_path() / "mdview-XXXXXX").string()) {
-    if (!::mkdtemp(path_.data()))
-      throw Error(ErrorCode::kIo, path_ + ": cannot be made: " + std::strerror(errno));
-  }
-  ~ScratchFolder() {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-  }
-  ScratchFolder(const ScratchFolder&) = delete;
-  ScratchFolder& operator=(const ScratchFolder&) = delete;
-  std::string file(const std::string& name) const { return (fs::path(path_) / name).string(); }
-
- private:
-  std::string path_;
-};
-
-constexpr std::uint64_t kMostCopiedBytes = std::uint64_t{32} << 20;
+constexpr std::uint64_t kMaxCopiedBytes = std::uint64_t{32} << 20;
 
 /// A small file is copied first, so that what others write into it in place, by cp for instance,
 /// pulls nothing away from under the picture. Large ones are mapped as they are.
 std::shared_ptr<const MdkFile> open_baked(const std::string& path) {
   auto file = std::make_shared<const MdkFile>(path);  // errors name this one
-  if (file->file_bytes() > kMostCopiedBytes) return file;
+  if (file->file_bytes() > kMaxCopiedBytes) return file;
   try {
     const ScratchFolder folder;
     const std::string copy = folder.file(fs::path(path).filename().string());
@@ -48,91 +24,66 @@ std::shared_ptr<const MdkFile> open_baked(const std::string& path) {
   } catch (const Error&) {
   } catch (const fs::filesystem_error&) {
   }
-  return file;  // where there is no room for a copy
+  return file;  // where there is no space for a copy
 }
 
 }  // namespace
 
-std::vector<SceneLoader::FileStamp> SceneLoader::stamps_of(const std::vector<std::string>& paths) {
-  std::vector<FileStamp> stamps;
+bool SceneLoader::Source::take_change() {
+  std::vector<FileStamp> now;
   for (const std::string& path : paths) {
-    FileStamp stamp;
     std::error_code none;
-    stamp.time = fs::last_write_time(path, none);
-    stamp.bytes = fs::file_size(path, none);
-    stamps.push_back(stamp);
+    now.push_back({fs::last_write_time(path, none), fs::file_size(path, none)});
   }
-  return stamps;
+  return std::exchange(stamps, now) != now;
 }
 
 void SceneLoader::load(std::vector<std::string> paths) {
   cancel();
-  paths_ = std::move(paths);
-  start(Reason::kAskedFor);
-}
-
-void SceneLoader::start(Reason reason) {
-  stamps_ = stamps_of(paths_);
-  cancelled_ = false;
-  busy_ = true;
-  thread_ = std::thread([this, paths = paths_, reason, threads = thread_count()] {
-    const ThreadLimit limit(threads);
-    run(paths, reason);
-  });
+  asked_.paths = std::move(paths);
+  asked_.take_change();
+  if (asked_.paths == open_.paths) open_.stamps = asked_.stamps;
+  start(asked_);
 }
 
 void SceneLoader::cancel() {
-  {
-    const std::lock_guard lock(mutex_);
-    cancelled_ = true;
-    if (process_) process_->kill();
-  }
-  if (thread_.joinable()) thread_.join();
-  const std::lock_guard lock(mutex_);
+  task_.cancel();
   loaded_.reset();
-}
-
-void SceneLoader::wait(double seconds) {
-  std::unique_lock lock(mutex_);
-  done_.wait_for(lock, std::chrono::duration<double>(seconds), [this] { return !busy_; });
-}
-
-std::optional<SceneLoader::Progress> SceneLoader::progress() const {
-  const std::lock_guard lock(mutex_);
-  return progress_;
-}
-
-std::optional<LoadedScene> SceneLoader::take_loaded() {
-  const std::lock_guard lock(mutex_);
-  return std::exchange(loaded_, std::nullopt);
+  asked_ = {};
 }
 
 void SceneLoader::look_for_changes() {
-  if (paths_.empty() || busy_ || stamps_of(paths_) == stamps_) return;
-  if (thread_.joinable()) thread_.join();
-  start(Reason::kChanged);
+  if (busy() || loaded_) return;
+  if (open_.take_change()) {
+    if (asked_.paths == open_.paths) asked_ = {};
+    start(open_);
+  } else if (asked_.take_change()) {
+    start(asked_);
+  }
 }
 
-void SceneLoader::run(const std::vector<std::string>& paths, Reason reason) {
-  LoadedScene scene;
-  scene.path = paths.front();
-  scene.is_again = reason == Reason::kChanged;
-  try {
-    scene.file = open(paths);
-  } catch (const Error& error) {
-    scene.error = error;
-  } catch (const std::exception& error) {
-    scene.error = Error(ErrorCode::kInternal, paths.front() + ": " + error.what());
-  }
-  {
-    const std::lock_guard lock(mutex_);
-    process_.reset();
-    progress_.reset();
-    if (!cancelled_) loaded_ = std::move(scene);
-    busy_ = false;
-  }
-  done_.notify_all();
-  on_news_();
+void SceneLoader::start(const Source& source) {
+  name_in_work_ = fs::path(source.paths.front()).filename().string();
+  task_.start([this, paths = source.paths, is_again = &source == &open_] {
+    LoadedScene scene{nullptr, {}, paths, is_again};
+    try {
+      scene.error = error_of(paths.front(), [&] { scene.file = open(paths); });
+    } catch (const MdprepTask::Cancelled&) {
+      return;
+    }
+    loaded_ = std::move(scene);
+  });
+}
+
+std::optional<SceneLoader::Progress> SceneLoader::progress() const {
+  const auto bake = task_.progress();
+  return bake ? std::optional(Progress{name_in_work_, *bake}) : std::nullopt;
+}
+
+std::optional<LoadedScene> SceneLoader::take_loaded() {
+  if (busy() || !loaded_) return {};
+  if (loaded_->file && !loaded_->is_again) open_ = std::exchange(asked_, {});
+  return std::exchange(loaded_, std::nullopt);
 }
 
 std::shared_ptr<const MdkFile> SceneLoader::open(const std::vector<std::string>& paths) {
@@ -142,25 +93,11 @@ std::shared_ptr<const MdkFile> SceneLoader::open(const std::vector<std::string>&
 }
 
 std::shared_ptr<const MdkFile> SceneLoader::bake(const std::vector<std::string>& paths) {
-  const fs::path source(paths.front());
   const ScratchFolder folder;
-  const std::string baked = folder.file(source.stem().string() + ".mdk");
+  const std::string baked = folder.file(fs::path(paths.front()).stem().string() + ".mdk");
   std::vector<std::string> arguments = {"-o", baked, "--"};
   arguments.insert(arguments.end(), paths.begin(), paths.end());
-  const auto process = std::make_shared<MdprepProcess>("bake", arguments);
-  {
-    const std::lock_guard lock(mutex_);
-    process_ = process;
-    progress_ = Progress{source.filename().string(), {}};
-    if (cancelled_) process->kill();
-  }
-  on_news_();
-  while (auto news = process->next_progress()) {
-    const std::lock_guard lock(mutex_);
-    progress_->bake = *std::move(news);
-    on_news_();
-  }
-  process->finish();
+  task_.run_mdprep("bake", arguments);
   return std::make_shared<const MdkFile>(baked);
 }
 

@@ -1,8 +1,4 @@
-// ColorScheme: whether the window is dark or light.
+// Moved.
 #pragma once
 
-namespace mdk {
-
-enum class ColorScheme { kDark, kLight };
-
-}  // namespace mdk
+#include "viewer/state/settings.h"  // IWYU pragma: export

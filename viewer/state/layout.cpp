@@ -3,12 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "viewer/state/time_line_rows.h"
-
 namespace mdk {
 namespace {
 
+// On an ordinary display.
 constexpr float kSidePanelWidth = 360, kTimeLineHeight = 128;
+constexpr float kTimeLineRowWidth = 740;  // of all controls
+constexpr float kTimeLineRowHeight = 31;  // of a second row, with the gap above it
 
 }  // namespace
 
@@ -23,6 +24,14 @@ Layout make_layout(float width, float height, float scale, PanelMode mode) {
   return {{0, 0, picture_width, picture_height},
           {0, picture_height, picture_width, below},
           {picture_width, 0, side, height}};
+}
+
+bool time_line_wraps(float width, float scale) { return width < kTimeLineRowWidth * scale; }
+
+std::vector<Rect> picture_places(const Rect& space, CompareMode mode) {
+  if (mode != CompareMode::kSideBySide) return {space};
+  const float half = space.width / 2;
+  return {{space.x, space.y, half, space.height}, {space.x + half, space.y, half, space.height}};
 }
 
 }  // namespace mdk

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "common/trace/camera.h"
-#include "viewer/state/moment.h"
+#include "viewer/state/pose.h"
 
 namespace mdk {
 

@@ -39,6 +39,7 @@ void Playback::set_clip(std::size_t clip) {
   time_ = 0;
   range_.reset();
   direction_ = StepDirection::kForward;
+  if (!(seconds() > 0)) pause();
 }
 
 bool Playback::set_clip(std::string_view name) {
@@ -123,6 +124,10 @@ bool Playback::advance(double elapsed) {
   if (!playing_ || scrubbing_ || !(elapsed > 0) || !std::isfinite(elapsed)) return false;
   const double before = time_, step = elapsed * speed_;
   const TimeRange span = played();
+  if (!(span.begin < span.end)) {  // one key: there is nothing to play
+    pause();
+    return false;
+  }
   switch (loop_) {
     case LoopMode::kOnce:
       seek(std::min(time_ + step, span.end));

@@ -56,7 +56,7 @@ class Playback {
   bool playing() const { return playing_; }
   LoopMode loop() const { return loop_; }
   double speed() const { return speed_; }
-  /// The last key at or before the present time, counted within the clip.
+  /// The last key at or before the current time, counted within the clip.
   std::size_t key() const;
 
   /// Playing stays inside the range, where there is one.
@@ -65,7 +65,7 @@ class Playback {
   /// end that is not a number is ignored.
   void set_range(double from, double to);
   void clear_range() { range_.reset(); }
-  /// Moves one end of the range to the present time; the other stays, or is the clip's. An end that
+  /// Moves one end of the range to the current time; the other stays, or is the clip's. An end that
   /// would pass the other begins a new range up to the clip's end, or from its start.
   void begin_range_here();
   void end_range_here();
@@ -74,15 +74,15 @@ class Playback {
   /// The time of the key nearest to `time`.
   double nearest_key_time(double time) const;
 
-  /// Goes to the start of another clip and plays on if it was playing. A number that is no clip is
-  /// ignored.
+  /// Goes to the start of another clip and plays on if it was playing and there is more than one
+  /// key. A number that is no clip is ignored.
   void set_clip(std::size_t clip);
   /// Whether there was a clip of this name to go to.
   bool set_clip(std::string_view name);
 
   /// To a moment, clamped to the clip; what is not a number is ignored.
   void seek(double time);
-  /// Pauses at the next key before or behind the present time; loops wrap around.
+  /// Pauses at the next key before or behind the current time; loops wrap around.
   void step_key(StepDirection direction);
   void go_to_start() { seek(played().begin); }
   void go_to_end() { seek(played().end); }
@@ -95,7 +95,8 @@ class Playback {
   void set_loop(LoopMode loop);
   void set_speed(double speed);
 
-  /// While a hand holds the play head, time stands where the hand is; playing goes on afterwards.
+  /// While the user drags the play head, time stands where it is dragged; playing goes on
+  /// afterwards.
   void begin_scrub() { scrubbing_ = true; }
   void end_scrub() { scrubbing_ = false; }
   bool scrubbing() const { return scrubbing_; }

@@ -44,14 +44,15 @@ unsigned compile(unsigned kind, const char* source) {
 
 }  // namespace
 
-PixelRect letterbox(const PixelRect& room, std::uint32_t picture_width,
+PixelRect letterbox(const PixelRect& space, std::uint32_t picture_width,
                     std::uint32_t picture_height) {
-  if (picture_width == 0 || picture_height == 0 || room.width <= 0 || room.height <= 0) return {};
-  const double scale = std::min(static_cast<double>(room.width) / picture_width,
-                                static_cast<double>(room.height) / picture_height);
+  if (picture_width == 0 || picture_height == 0 || space.width <= 0 || space.height <= 0) return {};
+  const double scale = std::min(static_cast<double>(space.width) / picture_width,
+                                static_cast<double>(space.height) / picture_height);
   const int width = static_cast<int>(std::lround(picture_width * scale));
   const int height = static_cast<int>(std::lround(picture_height * scale));
-  return {room.x + (room.width - width) / 2, room.y + (room.height - height) / 2, width, height};
+  return {space.x + (space.width - width) / 2, space.y + (space.height - height) / 2, width,
+          height};
 }
 
 TextureBlit::TextureBlit() {
@@ -94,9 +95,9 @@ void TextureBlit::upload(std::span<const std::uint32_t> pixels, std::uint32_t wi
   height_ = height;
 }
 
-void TextureBlit::draw(const PixelRect& room, int framebuffer_height) const {
+void TextureBlit::draw(const PixelRect& space, int framebuffer_height) const {
   if (width_ == 0) return;
-  const PixelRect to = letterbox(room, width_, height_);
+  const PixelRect to = letterbox(space, width_, height_);
   glViewport(to.x, framebuffer_height - to.y - to.height, to.width, to.height);
   glDisable(GL_BLEND);
   glUseProgram(program_);

@@ -11,8 +11,8 @@ struct PixelRect {
   int x = 0, y = 0, width = 0, height = 0;
 };
 
-/// The largest rectangle of the picture's shape that fits into `room`, centred.
-PixelRect letterbox(const PixelRect& room, std::uint32_t picture_width,
+/// The largest rectangle of the picture's shape that fits into `space`, centred.
+PixelRect letterbox(const PixelRect& space, std::uint32_t picture_width,
                     std::uint32_t picture_height);
 
 /// Needs a current OpenGL 3.3 context from its making to its end.
@@ -26,9 +26,9 @@ class TextureBlit {
   /// `pixels`: width * height sRGB RGBA, row 0 on top.
   void upload(std::span<const std::uint32_t> pixels, std::uint32_t width, std::uint32_t height);
 
-  /// Draws the last upload, filtered, undistorted, inside `room`; texel for pixel where sizes
+  /// Draws the last upload, filtered, undistorted, inside `space`; texel for pixel where sizes
   /// agree.
-  void draw(const PixelRect& room, int framebuffer_height) const;
+  void draw(const PixelRect& space, int framebuffer_height) const;
 
   void clear() { width_ = height_ = 0; }
 

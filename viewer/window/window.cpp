@@ -8,12 +8,10 @@
 #include <imgui.h>
 
 #include <algorithm>
-#include <array>
-#include <optional>
 #include <utility>
 
 #include "common/base/error.h"
-#include "viewer/window/font_book.h"
+#include "viewer/window/fonts.h"
 
 namespace mdk {
 namespace {
@@ -27,12 +25,12 @@ Error no_window(const std::string& what) {
 
 // EGL first: GLX has a thousand configurations to be asked for twenty attributes each, which takes
 // longer than all the rest of a start.
-GLFWwindow* create_window(const WindowSize& size) {
+GLFWwindow* create_window(const WindowSetup& setup) {
   for (const int api : {GLFW_EGL_CONTEXT_API, GLFW_NATIVE_CONTEXT_API}) {
     glfwWindowHint(GLFW_CONTEXT_CREATION_API, api);
     if (GLFWwindow* const window =
-            glfwCreateWindow(static_cast<int>(size.width), static_cast<int>(size.height), "mdview",
-                             nullptr, nullptr))
+            glfwCreateWindow(static_cast<int>(setup.width), static_cast<int>(setup.height),
+                             "mdview", nullptr, nullptr))
       return window;
   }
   return nullptr;
@@ -49,29 +47,19 @@ struct Window::Events {
   std::vector<int> tapped;  ///< keys pressed since the last frame
   std::vector<int> held;    ///< of the last frame's, those that ImGui was told of by us
 
-  /// What a played hand holds; ImGui is told it in place of what the system says.
-  struct Played {
-    float x = -1, y = -1, wheel_x = 0, wheel_y = 0;
-    std::array<bool, 3> down{};
-    int key = 0;
-    unsigned character = 0;
-  };
-  std::optional<Played> played;
-
   static Events& of(GLFWwindow* window) {
     return *static_cast<Events*>(glfwGetWindowUserPointer(window));
   }
 };
 
-Window::Window(const WindowSize& size, SizeUnit unit, FontBook& fonts)
-    : events_(std::make_unique<Events>()) {
+Window::Window(const WindowSetup& setup, FontBook& fonts) : events_(std::make_unique<Events>()) {
   if (!glfwInit()) throw no_window("mdview finds no display to open a window on");
   glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
   glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
   glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
   glfwWindowHint(GLFW_OPENGL_FORWARD_COMPAT, GLFW_TRUE);
-  glfwWindowHint(GLFW_SCALE_TO_MONITOR, unit == SizeUnit::kScaled ? GLFW_TRUE : GLFW_FALSE);
-  window_ = create_window(size);
+  glfwWindowHint(GLFW_SCALE_TO_MONITOR, setup.unit == SizeUnit::kScaled ? GLFW_TRUE : GLFW_FALSE);
+  window_ = create_window(setup);
   if (!window_) {
     const Error error = no_window("mdview cannot open a window with OpenGL 3.3");
     glfwTerminate();
@@ -84,7 +72,8 @@ Window::Window(const WindowSize& size, SizeUnit unit, FontBook& fonts)
     throw no_window("the functions of OpenGL 3.3 are missing here");
   }
   glfwSwapInterval(1);
-  glfwSetWindowSizeLimits(window_, kMinWindowSide, kMinWindowSide, GLFW_DONT_CARE, GLFW_DONT_CARE);
+  const auto min_side = static_cast<int>(setup.min_side);
+  glfwSetWindowSizeLimits(window_, min_side, min_side, GLFW_DONT_CARE, GLFW_DONT_CARE);
   glfwSetWindowUserPointer(window_, events_.get());
   install_callbacks(window_);
 
@@ -103,6 +92,8 @@ Window::~Window() {
   glfwTerminate();
 }
 
+void Window::note_activity(GLFWwindow* window) { Events::of(window).active = true; }
+
 void Window::install_callbacks(GLFWwindow* window) {
   glfwSetKeyCallback(window, [](GLFWwindow* w, int key, int, int action, int) {
     Events& events = Events::of(w);
@@ -118,18 +109,14 @@ void Window::install_callbacks(GLFWwindow* window) {
     events.active = true;
     events.drops.insert(events.drops.end(), paths, paths + count);
   });
-  glfwSetMouseButtonCallback(window,
-                             [](GLFWwindow* w, int, int, int) { Events::of(w).active = true; });
-  glfwSetCursorPosCallback(window,
-                           [](GLFWwindow* w, double, double) { Events::of(w).active = true; });
-  glfwSetScrollCallback(window, [](GLFWwindow* w, double, double) { Events::of(w).active = true; });
-  glfwSetWindowRefreshCallback(window, [](GLFWwindow* w) { Events::of(w).active = true; });
-  glfwSetWindowFocusCallback(window, [](GLFWwindow* w, int) { Events::of(w).active = true; });
-  glfwSetCursorEnterCallback(window, [](GLFWwindow* w, int) { Events::of(w).active = true; });
-  glfwSetWindowContentScaleCallback(
-      window, [](GLFWwindow* w, float, float) { Events::of(w).active = true; });
-  glfwSetFramebufferSizeCallback(window,
-                                 [](GLFWwindow* w, int, int) { Events::of(w).active = true; });
+  glfwSetMouseButtonCallback(window, [](GLFWwindow* w, int, int, int) { note_activity(w); });
+  glfwSetCursorPosCallback(window, [](GLFWwindow* w, double, double) { note_activity(w); });
+  glfwSetScrollCallback(window, [](GLFWwindow* w, double, double) { note_activity(w); });
+  glfwSetWindowRefreshCallback(window, note_activity);
+  glfwSetWindowFocusCallback(window, [](GLFWwindow* w, int) { note_activity(w); });
+  glfwSetCursorEnterCallback(window, [](GLFWwindow* w, int) { note_activity(w); });
+  glfwSetWindowContentScaleCallback(window, [](GLFWwindow* w, float, float) { note_activity(w); });
+  glfwSetFramebufferSizeCallback(window, [](GLFWwindow* w, int, int) { note_activity(w); });
 }
 
 bool Window::should_close() const { return glfwWindowShouldClose(window_); }
@@ -148,39 +135,6 @@ void Window::wait_events(double seconds) {
 
 void Window::wake() { glfwPostEmptyEvent(); }
 
-void Window::play(const PlayedEvent& event) {
-  if (!events_->played) events_->played.emplace();
-  Events::Played& hand = *events_->played;
-  events_->active = true;
-  switch (event.kind) {
-    case PlayedKind::kMove:
-      hand.x = event.x;
-      hand.y = event.y;
-      break;
-    case PlayedKind::kPress:
-      hand.down.at(static_cast<std::size_t>(event.number)) = true;
-      break;
-    case PlayedKind::kRelease:
-      hand.down.at(static_cast<std::size_t>(event.number)) = false;
-      break;
-    case PlayedKind::kWheel:
-      hand.wheel_x += event.x;
-      hand.wheel_y += event.y;
-      break;
-    case PlayedKind::kKey:
-      events_->keys.push_back(event.key);
-      hand.key = event.key.key;
-      hand.character = event.key.character;
-      break;
-    case PlayedKind::kDrop:
-      events_->drops.push_back(event.path);
-      break;
-    case PlayedKind::kResize:
-      glfwSetWindowSize(window_, static_cast<int>(event.x), static_cast<int>(event.y));
-      break;
-  }
-}
-
 // ImGui looks at keys once a frame: one that went down and up in between is held for a frame, or a
 // quick Enter in a text field would be lost.
 void Window::hold_taps() {
@@ -192,20 +146,6 @@ void Window::hold_taps() {
     io.KeysDown[key] = true;
     events_->held.push_back(key);
   }
-}
-
-// After the backend has told ImGui what the system says, and before ImGui looks.
-void Window::hand_over_played() {
-  if (!events_->played) return;
-  Events::Played& hand = *events_->played;
-  ImGuiIO& io = ImGui::GetIO();
-  io.MousePos = {hand.x, hand.y};
-  std::copy(hand.down.begin(), hand.down.end(), std::begin(io.MouseDown));
-  io.MouseWheel = std::exchange(hand.wheel_y, 0.0f);
-  io.MouseWheelH = std::exchange(hand.wheel_x, 0.0f);
-  std::fill(std::begin(io.KeysDown), std::end(io.KeysDown), false);
-  if (hand.key != 0) io.KeysDown[std::exchange(hand.key, 0)] = true;
-  if (hand.character != 0) io.AddInputCharacter(std::exchange(hand.character, 0u));
 }
 
 bool Window::take_activity() { return std::exchange(events_->active, false); }
@@ -222,7 +162,7 @@ WindowShape Window::shape() const {
   int width = 0, height = 0;
   glfwGetWindowSize(window_, &width, &height);
   WindowShape shape{static_cast<float>(width), static_cast<float>(height)};
-  const int pixels = framebuffer_width();
+  const int pixels = framebuffer().width;
   if (width > 0 && pixels > 0) shape.pixel_ratio = static_cast<float>(pixels) / shape.width;
   float scale_x = 1, scale_y = 1;
   glfwGetWindowContentScale(window_, &scale_x, &scale_y);
@@ -230,16 +170,10 @@ WindowShape Window::shape() const {
   return shape;
 }
 
-int Window::framebuffer_width() const {
-  int width = 0, height = 0;
-  glfwGetFramebufferSize(window_, &width, &height);
-  return width;
-}
-
-int Window::framebuffer_height() const {
-  int width = 0, height = 0;
-  glfwGetFramebufferSize(window_, &width, &height);
-  return height;
+PixelRect Window::framebuffer() const {
+  PixelRect pixels;
+  glfwGetFramebufferSize(window_, &pixels.width, &pixels.height);
+  return pixels;
 }
 
 void Window::renew_fonts() {
@@ -248,14 +182,14 @@ void Window::renew_fonts() {
 }
 
 void Window::begin_frame() {
-  glViewport(0, 0, framebuffer_width(), framebuffer_height());
+  const PixelRect pixels = framebuffer();
+  glViewport(0, 0, pixels.width, pixels.height);
   const ImVec4& ground = ImGui::GetStyle().Colors[ImGuiCol_WindowBg];
   glClearColor(ground.x, ground.y, ground.z, 1);
   glClear(GL_COLOR_BUFFER_BIT);
   ImGui_ImplOpenGL3_NewFrame();
   ImGui_ImplGlfw_NewFrame();
   hold_taps();
-  hand_over_played();
   ImGui::NewFrame();
 }
 
@@ -264,8 +198,8 @@ void Window::end_frame() {
   ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
 }
 
-Picture Window::read_pixels() const {
-  const int width = framebuffer_width(), height = framebuffer_height();
+std::vector<std::uint32_t> Window::read_pixels() const {
+  const auto [left, top, width, height] = framebuffer();
   const auto row = static_cast<std::size_t>(width);
   std::vector<std::uint32_t> pixels(row * static_cast<std::size_t>(height));
   glPixelStorei(GL_PACK_ALIGNMENT, 4);
@@ -275,7 +209,7 @@ Picture Window::read_pixels() const {
     const auto lower = pixels.begin() + static_cast<std::ptrdiff_t>(row) * (height - 1 - y);
     std::swap_ranges(upper, upper + width, lower);
   }
-  return {static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height), std::move(pixels)};
+  return pixels;
 }
 
 void Window::present() { glfwSwapBuffers(window_); }

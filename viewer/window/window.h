@@ -6,10 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "viewer/commands.h"
-#include "viewer/options.h"
-#include "viewer/picture/picture.h"
-#include "viewer/window/played_event.h"
+#include "viewer/window/texture_blit.h"
 
 struct GLFWwindow;
 
@@ -19,6 +16,19 @@ class FontBook;
 
 /// Whether a size counts pixels of an ordinary display and grows on a dense one.
 enum class SizeUnit { kExact, kScaled };
+
+/// The window to open, in window coordinates.
+struct WindowSetup {
+  std::uint32_t width = 0, height = 0, min_side = 1;
+  SizeUnit unit = SizeUnit::kExact;
+};
+
+/// A key that was pressed or a character that was typed; the other one is 0. Letters and signs are
+/// taken as characters, so that they follow the keyboard's layout.
+struct KeyEvent {
+  int key = 0;  ///< GLFW_KEY_...
+  unsigned character = 0;
+};
 
 /// How large the window is, and how dense its display.
 struct WindowShape {
@@ -34,7 +44,7 @@ class Window {
  public:
   /// `fonts` must outlive it. Throws Error (kIo) where there is no display or no OpenGL 3.3; the
   /// sentence says what to do.
-  Window(const WindowSize& size, SizeUnit unit, FontBook& fonts);
+  Window(const WindowSetup& setup, FontBook& fonts);
   ~Window();
   Window(const Window&) = delete;
   Window& operator=(const Window&) = delete;
@@ -55,13 +65,9 @@ class Window {
   /// Paths of files dropped on the window since the last call.
   std::vector<std::string> take_drops();
 
-  /// As if a hand had done it; from then on no other hand moves the pointer.
-  void play(const PlayedEvent& event);
-
   /// As it is now: the user, or a move to another display, may change any of it.
   WindowShape shape() const;
-  int framebuffer_width() const;
-  int framebuffer_height() const;
+  PixelRect framebuffer() const;
 
   /// ImGui's fonts are others than at the last frame.
   void renew_fonts();
@@ -70,14 +76,14 @@ class Window {
   void begin_frame();
   /// Draws what ImGui has collected over what was drawn since begin_frame().
   void end_frame();
-  /// What was drawn, before it is presented.
-  Picture read_pixels() const;
+  /// What was drawn, before it is presented: the framebuffer in sRGB RGBA, row 0 on top.
+  std::vector<std::uint32_t> read_pixels() const;
   void present();
 
  private:
   struct Events;
   void hold_taps();
-  void hand_over_played();
+  static void note_activity(GLFWwindow* window);
   static void install_callbacks(GLFWwindow* window);
 
   std::unique_ptr<Events> events_;
