@@ -7,9 +7,8 @@
 
 #include "common/base/parallel.h"
 #include "common/math/affine_path.h"
-#include "common/trace/box_columns.h"
 #include "common/trace/cluster_trees.h"
-#include "common/trace/key_poses.h"
+#include "common/trace/query_keys.h"
 
 namespace mdk {
 namespace {
@@ -18,10 +17,6 @@ constexpr std::size_t kRaysPerChunk = 64;
 
 bool is_finite(const Vec3f& v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-}
-
-VertexSource vertices_at(const KeyPoses& poses, const KeyInterval& at) {
-  return {poses.at(at.key0), poses.at(at.key1), at.key0 == at.key1 ? 0.0f : at.s};
 }
 
 /// The largest component of a direction brought near 1 by a power of two, which rounds nothing;
@@ -96,7 +91,7 @@ struct RayQuery::State {
     MovingBoxes boxes;
   };
 
-  /// Clusters whose boxes the ray meets are entered nearest first. `map_of` gives a cluster's map
+  /// Clusters whose boxes the ray enters come nearest first. `map_of` gives a cluster's map
   /// at the ray's time.
   template <class MapOf>
   RayHit trace(const ScaledRay& scaled, float t_max, const Scene& scene, RayAim aim,
@@ -104,19 +99,17 @@ struct RayQuery::State {
     RayHit hit = scaled.nothing_yet(t_max);
     const WorldRay& ray = scaled.ray;
     const double slack = world_slack(model, ray.origin);
-    const BoxRay world = make_box_ray(ray.origin, ray.direction, Affine3d{}, model.bounds, slack);
-    thread_local std::vector<MetBox> met;
-    met.resize(std::max(met.size(), scene.boxes.count));
-    const std::size_t count = meet_boxes(world, scene.boxes, hit.t, met.data());
+    const BoxRay world = make_box_ray(ray, Affine3d{}, model.bounds, slack);
+    thread_local std::vector<EnteredBox> entered;
+    entered.resize(std::max(entered.size(), scene.boxes.count));
+    const std::size_t count = enter_boxes(world, scene.boxes, hit.t, entered.data());
     const ClusterTrees& trees = scene.segment.trees;
-    for (std::size_t i = 0; i < count && !(met[i].enter > hit.t); ++i) {
-      const std::uint32_t c = met[i].box;
+    for (std::size_t i = 0; i < count && !(entered[i].enter > hit.t); ++i) {
+      const std::uint32_t c = entered[i].box;
       const std::vector<WideBvhNode>& nodes = trees.trees[c].nodes;
       if (nodes.empty()) continue;
-      const BoxRay local =
-          make_box_ray(ray.origin, ray.direction, map_of(c), scene.segment.bounds[c], slack);
-      intersect_cluster(
-          ray, local, {nodes, trees.blocks.data() + trees.first_leaf[c], scene.vertices}, aim, hit);
+      const BoxRay local = make_box_ray(ray, map_of(c), scene.segment.bounds[c], slack);
+      intersect(ray, local, {nodes, trees.blocks_of(c), scene.vertices}, aim, hit);
       if (aim == RayAim::kAny && hit.triangle != kNoHit) break;
     }
     return hit;
@@ -124,8 +117,7 @@ struct RayQuery::State {
 
   RayHit trace_at(const ScaledRay& scaled, float t_max, const KeyInterval& at, RayAim aim) const {
     const std::span<const Affine3f> from = model.key_maps(at.key0), to = model.key_maps(at.key1);
-    return trace(scaled, t_max,
-                 {segments[segment_of(model, at)], vertices_at(poses, at), boxes.at(at)}, aim,
+    return trace(scaled, t_max, {segments[segment_of(model, at)], poses.at(at), boxes.at(at)}, aim,
                  [&](std::uint32_t c) { return interpolate(from[c], to[c], at.s); });
   }
 
@@ -172,7 +164,7 @@ bool RayQuery::any_hit(const QueryRay& ray, const QueryMoment& moment) const {
 std::shared_ptr<const QueryMoment> RayQuery::prepare(const KeyInterval& at) const {
   const Model& model = state_->model;
   auto moment = std::make_shared<QueryMoment>();
-  moment->vertices = vertices_at(state_->poses, at);
+  moment->vertices = state_->poses.at(at);
   moment->boxes = state_->boxes.at(at);
   moment->segment = &state_->segments[segment_of(model, at)];
   const std::span<const Affine3f> from = model.key_maps(at.key0), to = model.key_maps(at.key1);
@@ -221,7 +213,7 @@ QueryHit brute_force_closest_hit(const PosedMesh& mesh, const QueryRay& ray) {
     block.push(t, model.triangles[t]);
     if (block.count < kBlockTriangles && t + 1 < model.triangle_count()) continue;
     block.pad();
-    intersect_blocks(scaled.ray, {&block, 1}, vertices, hit);
+    intersect(scaled.ray, {}, {{}, {&block, 1}, vertices}, RayAim::kClosest, hit);
     block = {};
   }
   return scaled.in_callers_lengths(hit);

@@ -134,6 +134,28 @@ TEST(Agreement, HitsAndCountsDoNotDependOnInstructionSetOrThreads) {
   }
 }
 
+TEST(Agreement, CountsDependOnTheFramesBeforeWhereTheTableSaysSoOnly) {
+  const DecomposeResult baked = bake(test::flying_boxes(30, 12));
+  const Model model = baked.model.view();
+  FrameRequest request{.camera = fit_camera(model.bounds, 1.5),
+                       .width = 150,
+                       .height = 100,
+                       .counting = Counting::kOn};
+  for (const TechniqueInfo& technique : technique_table()) {
+    if (technique.kind == TechniqueKind::kPeer || technique.kind == TechniqueKind::kAdaptive)
+      continue;
+    Renderer fresh(model, technique.id), worn(model, technique.id);
+    for (std::uint32_t i = 0; i < 40; ++i) {  // a long stay where all has flown apart
+      request.at = at_key(model.key_count() - 1 - i % 2);
+      worn.trace(request);
+    }
+    request.at = at_key(1);
+    const bool is_same = worn.trace(request).counters == fresh.trace(request).counters;
+    EXPECT_EQ(is_same, technique.kind != TechniqueKind::kHistory) << technique.id;
+    EXPECT_EQ(count_mismatches(worn.hits(), fresh.hits()), 0u) << technique.id;
+  }
+}
+
 /// Möller and Trumbore's test in double: another formula, another precision, no tiles.
 bool hit_in_double(const Vec3d& origin, const Vec3d& d, const Vec3d (&v)[3], double& t) {
   const Vec3d e1 = v[1] - v[0], e2 = v[2] - v[0], p = cross(d, e2);

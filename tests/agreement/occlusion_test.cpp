@@ -128,7 +128,7 @@ TEST(Occlusion, EveryTechniqueOfOursFindsBruteForcesRaysOnEveryScene) {
   }
 }
 
-/// Whether the ray from `o` (relative to the basis's origin) meets the triangle, in double, and
+/// Whether the ray from `o` (relative to the basis's origin) hits the triangle, in double, and
 /// whether that is certain.
 struct PlainAnswer {
   bool hit = false, certain = true;
@@ -149,12 +149,16 @@ TEST(Occlusion, BruteForceAgreesWithAPlainTestInDouble) {
   const Model model = baked.model.view();
   PosedMesh mesh(model);
   mesh.set_time(at_key(1));
-  const TriangleSoup soup{model.triangles.data(), mesh.positions().data(), model.triangle_count()};
+  TraceScene scene;
+  scene.triangles = model.triangles.data();
+  scene.triangle_count = model.triangle_count();
+  scene.positions = mesh.positions().data();
+  TileScratch scratch;
   Random random(17);
   int checked = 0;
   for (int i = 0; i < 60; ++i) {
     RayBeam beam = make_beam(mesh, random);
-    occlude_beam_brute_force(soup, beam);
+    occlude_beam(scene, beam, scratch);
     Vec3d axis[3];
     for (int k = 0; k < 3; ++k) axis[k] = normalized(to_double(beam.basis.axis[k]));
     const double unit = 1 / length(to_double(beam.basis.axis[2]));
