@@ -34,6 +34,22 @@ HWY_INLINE std::uint32_t mask_bits(D d, hn::Mask<D> mask) {
   return all & ((1u << hn::Lanes(d)) - 1);
 }
 
+/// The smallest of sixteen numbers, which are aligned.
+HWY_INLINE float min_of_sixteen(const float* values) {
+  const FloatTag d;
+  auto min = hn::Load(d, values);
+  for (std::size_t i = hn::Lanes(d); i < 16; i += hn::Lanes(d))
+    min = hn::Min(min, hn::Load(d, values + i));
+  return hn::GetLane(hn::MinOfLanes(d, min));
+}
+HWY_INLINE float max_of_sixteen(const float* values) {
+  const FloatTag d;
+  auto max = hn::Load(d, values);
+  for (std::size_t i = hn::Lanes(d); i < 16; i += hn::Lanes(d))
+    max = hn::Max(max, hn::Load(d, values + i));
+  return hn::GetLane(hn::MaxOfLanes(d, max));
+}
+
 /// A point or a direction in each lane.
 template <class D>
 struct Points {

@@ -15,10 +15,8 @@
 namespace mdk {
 namespace {
 
-DecomposeResult bake(PoseSequence sequence) {
-  SilentProgress silent;
-  return decompose(std::move(sequence), {}, silent);
-}
+using test::bake;
+using test::ResetIsa;
 
 /// From outside, close by, inside, along an axis, through a keyhole, and very wide.
 std::vector<Camera> cameras_for(const Aabb& bounds) {
@@ -44,11 +42,6 @@ std::vector<KeyInterval> moments_of(const Model& model) {
   for (int i = 0; i < 3; ++i) moments.push_back(locate_time(model, 0, when(random)));
   return moments;
 }
-
-class ResetIsa {
- public:
-  ~ResetIsa() { reset_isa(); }
-};
 
 TEST(Agreement, EveryTechniqueOfOursGivesBruteForcesHitsOnEveryScene) {
   for (auto& [name, sequence] : test::agreement_scenes()) {
@@ -137,7 +130,8 @@ TEST(Agreement, HitsAndCountsDoNotDependOnInstructionSetOrThreads) {
 TEST(Agreement, CountsDependOnTheFramesBeforeWhereTheTableSaysSoOnly) {
   const DecomposeResult baked = bake(test::flying_boxes(30, 12));
   const Model model = baked.model.view();
-  FrameRequest request{.camera = fit_camera(model.bounds, 1.5),
+  FrameRequest request{.at = at_key(0),
+                       .camera = fit_camera(model.bounds, 1.5),
                        .width = 150,
                        .height = 100,
                        .counting = Counting::kOn};

@@ -9,21 +9,13 @@
 #include "common/base/isa.h"
 #include "common/trace/kernels/beam_kernels.h"
 #include "common/trace/technique.h"
-#include "preprocess/pipeline.h"
 #include "tests/agreement/test_scenes.h"
 
 namespace mdk {
 namespace {
 
-DecomposeResult bake(PoseSequence sequence) {
-  SilentProgress silent;
-  return decompose(std::move(sequence), {}, silent);
-}
-
-class ResetIsa {
- public:
-  ~ResetIsa() { reset_isa(); }
-};
+using test::bake;
+using test::ResetIsa;
 
 class Random {
  public:

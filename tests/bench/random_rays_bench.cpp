@@ -58,7 +58,7 @@ std::vector<mdk::QueryRay> random_lines(const mdk::Aabb& box, std::mt19937_64& e
   return rays;
 }
 
-/// Clusters whose world boxes a line is expected to meet that meets the model's box.
+/// Clusters whose world boxes a line that hits the model's box is expected to enter.
 double clusters_entered(const mdk::Model& model, std::uint32_t key, const mdk::Aabb& box) {
   double area = 0;
   for (std::size_t c = 0; c < model.cluster_count(); ++c)

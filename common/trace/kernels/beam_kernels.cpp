@@ -45,12 +45,6 @@ class BeamInTree {
   }
   static constexpr bool is_past(float) { return false; }
 
-  HWY_INLINE Cell cell_of(const Aabb& box) const {
-    Cell cell;
-    cell.node = 0;
-    for (std::size_t axis = 0; axis < 3; ++axis) set_axis(cell, axis, box.lo[axis], box.hi[axis]);
-    return cell;
-  }
   HWY_INLINE void set_axis(Cell& cell, std::size_t axis, float lo, float hi) const {
     forms_.set_axis(cell, axis, lo, hi);
   }

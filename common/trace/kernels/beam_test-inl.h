@@ -56,11 +56,11 @@ class BeamRays {
       const std::size_t g = first / kBeamGroup;
       alive_[g] = static_cast<std::uint16_t>((1u << rays) - 1u);
       groups_ |= 1u << g;
-      group_u0_[g] = over_group<Min>(beam.u + first);
-      group_u1_[g] = over_group<Max>(beam.u + first);
-      group_v0_[g] = over_group<Min>(beam.v + first);
-      group_v1_[g] = over_group<Max>(beam.v + first);
-      group_w_[g] = over_group<Min>(beam.w + first);
+      group_u0_[g] = min_of_sixteen(beam.u + first);
+      group_u1_[g] = max_of_sixteen(beam.u + first);
+      group_v0_[g] = min_of_sixteen(beam.v + first);
+      group_v1_[g] = max_of_sixteen(beam.v + first);
+      group_w_[g] = min_of_sixteen(beam.w + first);
     }
     set_bounds();
   }
@@ -195,23 +195,6 @@ class BeamRays {
     if (alive_[g] != 0) return;
     groups_ &= ~(1u << g);
     changed_ = true;
-  }
-
-  struct Min {
-    static HWY_INLINE FloatVec of(FloatVec a, FloatVec b) { return hn::Min(a, b); }
-    static HWY_INLINE FloatVec of_lanes(FloatVec a) { return hn::MinOfLanes(FloatTag(), a); }
-  };
-  struct Max {
-    static HWY_INLINE FloatVec of(FloatVec a, FloatVec b) { return hn::Max(a, b); }
-    static HWY_INLINE FloatVec of_lanes(FloatVec a) { return hn::MaxOfLanes(FloatTag(), a); }
-  };
-  template <class Which>
-  static HWY_INLINE float over_group(const float* values) {
-    const FloatTag d;
-    auto result = hn::Load(d, values);
-    for (std::size_t i = hn::Lanes(d); i < kBeamGroup; i += hn::Lanes(d))
-      result = Which::of(result, hn::Load(d, values + i));
-    return hn::GetLane(Which::of_lanes(result));
   }
 
   void set_bounds() {

@@ -303,20 +303,12 @@ class TileImage {
     empty_ = false;
     for (; changed_ != 0; changed_ &= changed_ - 1) {
       const auto square = static_cast<std::size_t>(__builtin_ctz(changed_));
-      far_[square] = min_of(inverse_depth_ + square * kSquarePixels);
+      far_[square] = min_of_sixteen(inverse_depth_ + square * kSquarePixels);
     }
-    const float min = min_of(far_);
+    const float min = min_of_sixteen(far_);
     if (min == min_inverse_depth_) return;
     min_inverse_depth_ = min;
     farthest_ = 1.0f / min;
-  }
-
-  static HWY_INLINE float min_of(const float* sixteen) {
-    const FloatTag d;
-    auto min = hn::Load(d, sixteen);
-    for (std::size_t k = hn::Lanes(d); k < 16; k += hn::Lanes(d))
-      min = hn::Min(min, hn::Load(d, sixteen + k));
-    return hn::GetLane(hn::MinOfLanes(d, min));
   }
 
   float left_, top_;  ///< of the first pixel's centre

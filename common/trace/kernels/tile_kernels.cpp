@@ -102,16 +102,19 @@ class BlockTester {
   TileImage image_;
 };
 
-/// A tile's frustum in one basis: the four sides as forms, and the depth over boxes, which is least
-/// at the corner the depth's gradient picks.
-class TileFrustum {
+/// A tile's frustum on its way down one tree (walk-inl.h): the four sides as forms, and the depth
+/// over boxes, which is least at the corner the depth's gradient picks.
+template <class Counter>
+class TileInTree {
  public:
   struct Cell : BoxForms<kSides>::Cell {
     float nearest[3];  ///< what each axis adds to the least depth
   };
 
-  TileFrustum(const FrustumForms& forms, const TileRays& tile) : forms_(forms) {
+  TileInTree(const FrustumForms& forms, const BlockTester<Counter>& tester)
+      : forms_(forms), tester_(tester) {
     const hn::CappedTag<float, 4 * kSides> d;
+    const TileRays& tile = tester.tile();
     const float x = static_cast<float>(tile.x), y = static_cast<float>(tile.y);
     constexpr float kSide = kTileSide;
     alignas(64)
@@ -126,11 +129,11 @@ class TileFrustum {
       near_plane_[axis] = static_cast<std::uint8_t>(2 * axis + (forms.depth[axis] < 0));
   }
 
-  /// Bit c is set unless child c is outside, or farther than `farthest` as a whole; false bits are
-  /// certain, set ones are not. `depth` gets each child's least depth.
-  HWY_INLINE std::uint32_t enter(const WideBvhNode& node, float farthest,
-                                 float (&depth)[kBvhWidth]) const {
+  /// Not those outside, nor those farther than all hits; `depth` gets each child's least depth.
+  HWY_INLINE std::uint32_t enter(const WideBvhNode& node, float (&depth)[kBvhWidth]) const {
+    tester_.counter().nodes(node.count);
     const hn::CappedTag<float, kBvhWidth> d;
+    const float farthest = tester_.image().farthest();
     std::uint32_t entered = 0;
     for (std::size_t i = 0; i < kBvhWidth; i += hn::Lanes(d)) {
       const auto plane = [&](std::size_t r) { return hn::Load(d, node.bounds[r] + i); };
@@ -149,17 +152,30 @@ class TileFrustum {
     }
     return entered & ((1u << node.count) - 1);
   }
+  HWY_INLINE bool is_past(float depth) const { return depth > tester_.image().farthest(); }
 
   HWY_INLINE void set_axis(Cell& cell, std::size_t axis, float lo, float hi) const {
     sides_.set_axis(cell, axis, lo, hi);
     cell.nearest[axis] = forms_.depth[axis] * (forms_.depth[axis] < 0 ? hi : lo);
   }
+  HWY_INLINE bool misses(const Cell& cell) const {
+    tester_.counter().nodes(1);
+    return is_missed(cell);
+  }
+  /// Whether it misses a tree as a whole: looked at before a cluster is posed, and not counted.
+  HWY_INLINE bool misses_all(const KdTreeView& tree) const {
+    return is_missed(root_cell(*this, tree.bounds));
+  }
+  bool below_first(std::uint32_t axis, float split) const { return forms_.eye[axis] <= split; }
 
-  /// Whether the cell is outside or farther than `farthest`; false where in doubt.
-  HWY_INLINE bool misses(const Cell& cell, float farthest) const {
+  static constexpr bool finished() { return false; }
+
+ private:
+  /// Outside, or farther than all hits.
+  HWY_INLINE bool is_missed(const Cell& cell) const {
     if (sides_.is_outside(cell)) return true;
     const float depth = cell.nearest[0] + cell.nearest[1] + cell.nearest[2];
-    if (depth + forms_.depth_offset > farthest) return true;
+    if (depth + forms_.depth_offset > tester_.image().farthest()) return true;
     if (forms_.in_front) return false;
     float deepest = forms_.front_offset;
     for (std::size_t axis = 0; axis < 3; ++axis)
@@ -167,9 +183,6 @@ class TileFrustum {
     return deepest < 0;
   }
 
-  bool below_first(std::uint32_t axis, float split) const { return forms_.eye[axis] <= split; }
-
- private:
   template <class D, class V>
   HWY_INLINE V depth_at(D d, V x, V y, V z, float offset) const {
     const Vec3f& n = forms_.depth;
@@ -179,53 +192,9 @@ class TileFrustum {
   }
 
   const FrustumForms& forms_;
+  const BlockTester<Counter>& tester_;
   BoxForms<kSides> sides_;
   std::uint8_t near_plane_[3];
-};
-
-/// A tile on its way down one tree (walk-inl.h).
-template <class Counter>
-class TileInTree {
- public:
-  using Cell = TileFrustum::Cell;
-
-  TileInTree(const FrustumForms& forms, const BlockTester<Counter>& tester)
-      : frustum_(forms, tester.tile()), tester_(tester) {}
-
-  HWY_INLINE std::uint32_t enter(const WideBvhNode& node, float (&depth)[kBvhWidth]) const {
-    tester_.counter().nodes(node.count);
-    return frustum_.enter(node, farthest(), depth);
-  }
-  HWY_INLINE bool is_past(float depth) const { return depth > farthest(); }
-
-  HWY_INLINE Cell cell_of(const Aabb& box) const {
-    Cell cell;
-    cell.node = 0;
-    for (std::size_t axis = 0; axis < 3; ++axis) set_axis(cell, axis, box.lo[axis], box.hi[axis]);
-    return cell;
-  }
-  HWY_INLINE void set_axis(Cell& cell, std::size_t axis, float lo, float hi) const {
-    frustum_.set_axis(cell, axis, lo, hi);
-  }
-  HWY_INLINE bool misses(const Cell& cell) const {
-    tester_.counter().nodes(1);
-    return frustum_.misses(cell, farthest());
-  }
-  /// Whether it misses the tree as a whole: looked at before a cluster is posed, and not counted.
-  HWY_INLINE bool misses(const KdTreeView& tree) const {
-    return frustum_.misses(cell_of(tree.bounds), farthest());
-  }
-  bool below_first(std::uint32_t axis, float split) const {
-    return frustum_.below_first(axis, split);
-  }
-
-  static constexpr bool finished() { return false; }
-
- private:
-  float farthest() const { return tester_.image().farthest(); }
-
-  TileFrustum frustum_;
-  const BlockTester<Counter>& tester_;
 };
 
 /// What a trace needs at hand.
@@ -293,7 +262,7 @@ void trace(const TileTrace<Counter>& t, const KdLevels& levels) {
       if (!seen_clusters.is_new(c)) return;
       const TreeLevel<KdTreeView>& cluster = levels.clusters[c];
       const auto rays = t.rays_in(cluster.forms);
-      if (rays.misses(cluster.tree)) return;
+      if (rays.misses_all(cluster.tree)) return;
       t.tester.counter().clusters(1);
       t.scene.mesh->require(c);
       test_leaves(cluster.tree, rays);

@@ -5,8 +5,7 @@
 //     rays.enter(node, order)   the children that may be hit, a bit each, and for each a number
 //                               that grows with where its box begins
 //     rays.is_past(order)       nothing that begins there matters any more
-//     rays.cell_of(bounds)      a kd-tree's root as a Cell, which has a member `node`
-//     rays.misses(cell)         certainly
+//     rays.misses(cell)         certainly; a Cell is a node of a kd-tree and its box
 //     rays.set_axis(cell, axis, lo, hi)
 //     rays.below_first(axis, split)   whether what is below the plane comes first
 //     rays.finished()           no ray is left that could hit anything
@@ -65,6 +64,15 @@ HWY_INLINE void walk_bvh(std::span<const WideBvhNode> nodes, Rays& rays, const L
   }
 }
 
+template <class Rays>
+HWY_INLINE typename Rays::Cell root_cell(const Rays& rays, const Aabb& bounds) {
+  typename Rays::Cell cell;
+  cell.node = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    rays.set_axis(cell, axis, bounds.lo[axis], bounds.hi[axis]);
+  return cell;
+}
+
 /// Calls leaf(reference) for what stands in the leaves entered, near leaves first. The cell shrinks
 /// on the way down, and is tested whole (inverse frustum culling, RSH05).
 template <class Rays, class Leaf>
@@ -72,7 +80,7 @@ HWY_INLINE void walk_kd(const KdTreeView& tree, Rays& rays, const Leaf& leaf) {
   if (tree.nodes.empty()) return;
   typename Rays::Cell stack[kMaxKdDepth + 2];
   std::size_t size = 0;
-  stack[size++] = rays.cell_of(tree.bounds);
+  stack[size++] = root_cell(rays, tree.bounds);
   while (size > 0 && !rays.finished()) {
     typename Rays::Cell& cell = stack[size - 1];
     if (rays.misses(cell)) {
