@@ -1,5 +1,7 @@
 #include "common/trace/cluster_trees.h"
 
+#include <cassert>
+
 #include "common/base/parallel.h"
 
 namespace mdk {
@@ -7,7 +9,39 @@ namespace {
 
 constexpr int kBins = 64;  // built once: quality before speed
 
+bool holds(const TriangleBlock& block, std::uint32_t lane, const Triangle& triangle) {
+  for (int k = 0; k < 3; ++k)
+    if (block.corner[k][lane] != triangle.v[k]) return false;
+  return true;
+}
+
+/// What is wrong with one block; counts its triangles in `seen`.
+std::string validate_block(const TriangleBlock& block, std::span<const Triangle> triangles,
+                           std::vector<std::uint8_t>& seen) {
+  if (block.count < 1 || block.count > kBlockTriangles) return "has a wrong number of triangles";
+  for (std::uint32_t lane = 0; lane < kBlockTriangles; ++lane) {
+    const std::uint32_t triangle = block.triangle[lane];
+    if (triangle >= triangles.size()) return "names a triangle that is not there";
+    if (!holds(block, lane, triangles[triangle])) return "has corners of another triangle";
+    if (lane < block.count ? seen[triangle]++ != 0 : triangle != block.triangle[0])
+      return lane < block.count ? "holds a triangle a second time" : "has a spare lane of its own";
+  }
+  return {};
+}
+
 }  // namespace
+
+void append_blocks(const WideBvh& bvh, std::span<const Triangle> triangles, std::uint32_t first,
+                   std::vector<TriangleBlock>& blocks) {
+  for (std::uint32_t leaf = 0; leaf < bvh.leaf_count(); ++leaf) {
+    TriangleBlock& block = blocks.emplace_back();
+    for (const std::uint32_t item : bvh.leaf(leaf)) {
+      if (item == kNoItem) break;
+      block.push(first + item, triangles[first + item]);
+    }
+    block.pad();
+  }
+}
 
 std::size_t ClusterTrees::bytes() const {
   std::size_t sum = blocks.size() * sizeof(TriangleBlock);
@@ -25,7 +59,42 @@ ClusterTrees build_cluster_trees(const Model& model, std::uint32_t segment) {
     built.first_leaf.push_back(static_cast<std::uint32_t>(built.blocks.size()));
     append_blocks(built.trees[c], model.triangles, model.clusters[c].first_triangle, built.blocks);
   }
+  assert(validate(built, model).empty());
   return built;
+}
+
+std::string validate(std::span<const TriangleBlock> blocks, std::span<const Triangle> triangles) {
+  std::vector<std::uint8_t> seen(triangles.size());
+  std::size_t held = 0;
+  for (std::size_t b = 0; b < blocks.size(); ++b) {
+    const std::string wrong = validate_block(blocks[b], triangles, seen);
+    if (!wrong.empty()) return "block " + std::to_string(b) + " " + wrong;
+    held += blocks[b].count;
+  }
+  if (held != triangles.size())
+    return std::to_string(triangles.size() - held) + " triangles are in no block";
+  return {};
+}
+
+std::string validate(const ClusterTrees& trees, const Model& model) {
+  if (trees.trees.size() != model.cluster_count() || trees.first_leaf.size() != trees.trees.size())
+    return "clusters and trees differ in number";
+  std::size_t next = 0;
+  for (std::size_t c = 0; c < trees.trees.size(); ++c) {
+    const std::string where = "cluster " + std::to_string(c);
+    const WideBvh& tree = trees.trees[c];
+    if (trees.first_leaf[c] != next || next + tree.leaf_count() > trees.blocks.size())
+      return where + " has leaves without blocks";
+    next += tree.leaf_count();
+    const std::uint32_t first = model.clusters[c].first_triangle;
+    const std::span<const TriangleBlock> blocks = trees.blocks_of(c);
+    for (std::uint32_t leaf = 0; leaf < blocks.size(); ++leaf)
+      for (std::uint32_t lane = 0; lane < blocks[leaf].count; ++lane)
+        if (blocks[leaf].triangle[lane] != first + tree.leaf(leaf)[lane])
+          return where + " has a leaf unlike its block";
+  }
+  if (next != trees.blocks.size()) return "there are blocks without leaves";
+  return validate(trees.blocks, model.triangles);
 }
 
 }  // namespace mdk

@@ -7,9 +7,8 @@
 
 #include "common/base/parallel.h"
 #include "common/math/affine_path.h"
-#include "common/trace/box_columns.h"
 #include "common/trace/cluster_trees.h"
-#include "common/trace/key_poses.h"
+#include "common/trace/query_keys.h"
 
 namespace mdk {
 namespace {
@@ -18,10 +17,6 @@ constexpr std::size_t kRaysPerChunk = 64;
 
 bool is_finite(const Vec3f& v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-}
-
-VertexSource vertices_at(const KeyPoses& poses, const KeyInterval& at) {
-  return {poses.at(at.key0), poses.at(at.key1), at.key0 == at.key1 ? 0.0f : at.s};
 }
 
 /// The largest component of a direction brought near 1 by a power of two, which rounds nothing;
@@ -78,10 +73,17 @@ struct SegmentTrees {
 
 class QueryMoment {
  public:
+  const SegmentTrees& segment;
   VertexSource vertices;
   MovingBoxes boxes;
-  const SegmentTrees* segment = nullptr;
-  std::vector<Affine3d> local_from_world;
+  std::span<const Affine3f> from, to;
+  float s;
+  std::vector<Affine3d>
+      maps;  ///< local_from_world, by cluster; none: each ray makes those it needs
+
+  Affine3d map_of(std::uint32_t c) const {
+    return maps.empty() ? interpolate(from[c], to[c], s) : maps[c];
+  }
 };
 
 struct RayQuery::State {
@@ -89,62 +91,45 @@ struct RayQuery::State {
     for (std::uint32_t s = 0; s < m.segment_count(); ++s) segments.emplace_back(m, s);
   }
 
-  /// What a ray needs to know of its time.
-  struct Scene {
-    const SegmentTrees& segment;
-    VertexSource vertices;
-    MovingBoxes boxes;
-  };
+  QueryMoment moment_at(const KeyInterval& at) const {
+    return {segments[segment_of(model, at)],
+            poses.at(at),
+            boxes.at(at),
+            model.key_maps(at.key0),
+            model.key_maps(at.key1),
+            at.s,
+            {}};
+  }
 
-  /// Clusters whose boxes the ray meets are entered nearest first. `map_of` gives a cluster's map
-  /// at the ray's time.
-  template <class MapOf>
-  RayHit trace(const ScaledRay& scaled, float t_max, const Scene& scene, RayAim aim,
-               const MapOf& map_of) const {
+  /// Clusters whose boxes the ray enters come nearest first.
+  RayHit trace(const ScaledRay& scaled, float t_max, const QueryMoment& moment, RayAim aim) const {
     RayHit hit = scaled.nothing_yet(t_max);
     const WorldRay& ray = scaled.ray;
     const double slack = world_slack(model, ray.origin);
-    const BoxRay world = make_box_ray(ray.origin, ray.direction, Affine3d{}, model.bounds, slack);
-    thread_local std::vector<MetBox> met;
-    met.resize(std::max(met.size(), scene.boxes.count));
-    const std::size_t count = meet_boxes(world, scene.boxes, hit.t, met.data());
-    const ClusterTrees& trees = scene.segment.trees;
-    for (std::size_t i = 0; i < count && !(met[i].enter > hit.t); ++i) {
-      const std::uint32_t c = met[i].box;
+    const BoxRay world = make_box_ray(ray, Affine3d{}, model.bounds, slack);
+    thread_local std::vector<EnteredBox> entered;
+    entered.resize(std::max(entered.size(), moment.boxes.count));
+    const std::size_t count = enter_boxes(world, moment.boxes, hit.t, entered.data());
+    const ClusterTrees& trees = moment.segment.trees;
+    for (std::size_t i = 0; i < count && !(entered[i].enter > hit.t); ++i) {
+      const std::uint32_t c = entered[i].box;
       const std::vector<WideBvhNode>& nodes = trees.trees[c].nodes;
       if (nodes.empty()) continue;
-      const BoxRay local =
-          make_box_ray(ray.origin, ray.direction, map_of(c), scene.segment.bounds[c], slack);
-      intersect_cluster(
-          ray, local, {nodes, trees.blocks.data() + trees.first_leaf[c], scene.vertices}, aim, hit);
+      const BoxRay local = make_box_ray(ray, moment.map_of(c), moment.segment.bounds[c], slack);
+      intersect(ray, local, {nodes, trees.blocks_of(c), moment.vertices}, aim, hit);
       if (aim == RayAim::kAny && hit.triangle != kNoHit) break;
     }
     return hit;
   }
 
-  RayHit trace_at(const ScaledRay& scaled, float t_max, const KeyInterval& at, RayAim aim) const {
-    const std::span<const Affine3f> from = model.key_maps(at.key0), to = model.key_maps(at.key1);
-    return trace(scaled, t_max,
-                 {segments[segment_of(model, at)], vertices_at(poses, at), boxes.at(at)}, aim,
-                 [&](std::uint32_t c) { return interpolate(from[c], to[c], at.s); });
-  }
-
-  RayHit trace_at(const ScaledRay& scaled, float t_max, const QueryMoment& moment,
-                  RayAim aim) const {
-    return trace(scaled, t_max, {*moment.segment, moment.vertices, moment.boxes}, aim,
-                 [&](std::uint32_t c) { return moment.local_from_world[c]; });
-  }
-
-  template <class Moment>
-  QueryHit closest(const QueryRay& ray, const Moment& moment) const {
+  QueryHit closest(const QueryRay& ray, const QueryMoment& moment) const {
     const ScaledRay scaled(ray);
     if (!scaled.usable) return {};
-    return scaled.in_callers_lengths(trace_at(scaled, ray.t_max, moment, RayAim::kClosest));
+    return scaled.in_callers_lengths(trace(scaled, ray.t_max, moment, RayAim::kClosest));
   }
-  template <class Moment>
-  bool any(const QueryRay& ray, const Moment& moment) const {
+  bool any(const QueryRay& ray, const QueryMoment& moment) const {
     const ScaledRay scaled(ray);
-    return scaled.usable && trace_at(scaled, ray.t_max, moment, RayAim::kAny).triangle != kNoHit;
+    return scaled.usable && trace(scaled, ray.t_max, moment, RayAim::kAny).triangle != kNoHit;
   }
 
   const Model& model;
@@ -157,10 +142,10 @@ RayQuery::RayQuery(const Model& model) : state_(std::make_unique<State>(model)) 
 RayQuery::~RayQuery() = default;
 
 QueryHit RayQuery::closest_hit(const QueryRay& ray, const KeyInterval& at) const {
-  return state_->closest(ray, at);
+  return state_->closest(ray, state_->moment_at(at));
 }
 bool RayQuery::any_hit(const QueryRay& ray, const KeyInterval& at) const {
-  return state_->any(ray, at);
+  return state_->any(ray, state_->moment_at(at));
 }
 QueryHit RayQuery::closest_hit(const QueryRay& ray, const QueryMoment& moment) const {
   return state_->closest(ray, moment);
@@ -170,14 +155,9 @@ bool RayQuery::any_hit(const QueryRay& ray, const QueryMoment& moment) const {
 }
 
 std::shared_ptr<const QueryMoment> RayQuery::prepare(const KeyInterval& at) const {
-  const Model& model = state_->model;
-  auto moment = std::make_shared<QueryMoment>();
-  moment->vertices = vertices_at(state_->poses, at);
-  moment->boxes = state_->boxes.at(at);
-  moment->segment = &state_->segments[segment_of(model, at)];
-  const std::span<const Affine3f> from = model.key_maps(at.key0), to = model.key_maps(at.key1);
-  for (std::uint32_t c = 0; c < model.cluster_count(); ++c)
-    moment->local_from_world.push_back(interpolate(from[c], to[c], at.s));
+  const auto moment = std::make_shared<QueryMoment>(state_->moment_at(at));
+  for (std::uint32_t c = 0; c < state_->model.cluster_count(); ++c)
+    moment->maps.push_back(interpolate(moment->from[c], moment->to[c], at.s));
   return moment;
 }
 
@@ -221,7 +201,7 @@ QueryHit brute_force_closest_hit(const PosedMesh& mesh, const QueryRay& ray) {
     block.push(t, model.triangles[t]);
     if (block.count < kBlockTriangles && t + 1 < model.triangle_count()) continue;
     block.pad();
-    intersect_blocks(scaled.ray, {&block, 1}, vertices, hit);
+    intersect(scaled.ray, {}, {{}, {&block, 1}, vertices}, RayAim::kClosest, hit);
     block = {};
   }
   return scaled.in_callers_lengths(hit);

@@ -15,7 +15,7 @@
 
 namespace mdk {
 
-/// origin + t direction, for t in (t_min, t_max].
+/// origin + t direction, for t in (t_min, t_max]; both may be negative.
 struct QueryRay {
   Vec3f origin;
   Vec3f direction;  ///< of any length but zero; t counts in this length

@@ -11,8 +11,8 @@
 #include "common/trace/camera.h"
 #include "common/trace/frame_stats.h"
 #include "common/trace/hit_buffer.h"
+#include "common/trace/kernels/beam_kernels.h"
 #include "common/trace/kernels/tile_kernels.h"
-#include "common/trace/ray_beam.h"
 
 namespace mdk {
 
@@ -26,7 +26,7 @@ class Technique {
   /// Work that can be done ahead of the frame, timed apart from it (static trees for this pose).
   virtual void prebuild(const PosedMesh&) {}
 
-  /// Makes the structure valid for this pose. The mesh must outlive the next trace().
+  /// Makes the structure valid for this pose. The mesh must outlive what is traced of it.
   virtual void update(const PosedMesh& mesh) = 0;
 
   /// What the view asks for once per frame, before any tile: maps of the rays per cluster.
@@ -42,7 +42,7 @@ class Technique {
   /// O(clusters), but for those that keep nothing of the kind.
   virtual void prepare_occlusion() {}
 
-  /// Which rays of the beam meet the mesh. Techniques of ours agree on every ray, to the bit.
+  /// Which rays of the beam hit the mesh. Techniques of ours agree on every ray, to the bit.
   virtual void occlude(RayBeam& beam, TileScratch& scratch) const = 0;
 
   /// Memory of the structures, in bytes, without the mesh itself.
@@ -52,10 +52,11 @@ class Technique {
   virtual std::string note() const { return {}; }
 };
 
+/// What hits and counts of work depend on. All but peers give brute force's hits to the bit.
 enum class TechniqueKind {
-  kStructure,  ///< one way of ours: brute force's hits to the bit, counts that depend on nothing
-               ///< else
-  kAdaptive,   ///< chooses among ours by the clock: the same hits, but the counts of its choice
+  kStructure,  ///< counts depend on the model, the moment and the view alone
+  kHistory,    ///< counts depend on the frames shown before, too: so does its structure
+  kAdaptive,   ///< counts are those of its choice among others, which it makes by the clock
   kPeer,       ///< another program with a triangle test of its own: agrees in depth, counts nothing
   kOracle,     ///< brute force
 };

@@ -2,9 +2,24 @@
 
 #include "common/base/error.h"
 #include "common/trace/technique.h"
-#include "common/trace/techniques/makers.h"
+#include "common/trace/techniques/structure_technique.h"
+#include "common/trace/techniques/technique_chooser.h"
 
 namespace mdk {
+namespace {
+
+/// Whichever of ours measures cheapest on this model, view and machine.
+std::unique_ptr<Technique> make_auto(const Model& model) {
+  // Most likely best first; those that build anew in every frame are left out: where that could
+  // pay, hybrid-bvh does it when it does.
+  static constexpr TechniqueCandidate kCandidates[] = {{"fuzzy-bvh", make_fuzzy_bvh},
+                                                       {"refit-bvh", make_refit_bvh},
+                                                       {"tsah-refit", make_tsah_refit},
+                                                       {"hybrid-bvh", make_hybrid_bvh}};
+  return std::make_unique<TechniqueChooser>(model, kCandidates);
+}
+
+}  // namespace
 
 std::span<const TechniqueInfo> technique_table() {
   static constexpr TechniqueInfo kTable[] = {
@@ -20,8 +35,8 @@ std::span<const TechniqueInfo> technique_table() {
        "Lo09 §4.2", make_refit_bvh},
       {"tsah-refit", "T-SAH, refitted", "hierarchy built for several poses at once, refitted",
        "Bittner and Meister 2015", make_tsah_refit},
-      {"hybrid-bvh", "Hybrid BVH", "refitted until motion has spoilt it, then built anew",
-       "Lo09 §5.4", make_hybrid_bvh},
+      {"hybrid-bvh", "Hybrid BVH", "refitted until motion has worn it out, then built anew",
+       "Lo09 §5.4", make_hybrid_bvh, TechniqueKind::kHistory},
       {"decomp-refit", "Clusters, refitted", "motion clusters, their hierarchies refitted",
        "Lo09 §4.4", make_decomp_refit},
       {"auto", "Automatic", "whichever of ours measures cheapest here", "measured", make_auto,

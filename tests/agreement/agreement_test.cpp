@@ -15,10 +15,8 @@
 namespace mdk {
 namespace {
 
-DecomposeResult bake(PoseSequence sequence) {
-  SilentProgress silent;
-  return decompose(std::move(sequence), {}, silent);
-}
+using test::bake;
+using test::ResetIsa;
 
 /// From outside, close by, inside, along an axis, through a keyhole, and very wide.
 std::vector<Camera> cameras_for(const Aabb& bounds) {
@@ -44,11 +42,6 @@ std::vector<KeyInterval> moments_of(const Model& model) {
   for (int i = 0; i < 3; ++i) moments.push_back(locate_time(model, 0, when(random)));
   return moments;
 }
-
-class ResetIsa {
- public:
-  ~ResetIsa() { reset_isa(); }
-};
 
 TEST(Agreement, EveryTechniqueOfOursGivesBruteForcesHitsOnEveryScene) {
   for (auto& [name, sequence] : test::agreement_scenes()) {
@@ -131,6 +124,29 @@ TEST(Agreement, HitsAndCountsDoNotDependOnInstructionSetOrThreads) {
             << technique.id << " " << isa << " " << threads;
         EXPECT_EQ(got.counters.triangle_tests > 0, true);
       }
+  }
+}
+
+TEST(Agreement, CountsDependOnTheFramesBeforeWhereTheTableSaysSoOnly) {
+  const DecomposeResult baked = bake(test::flying_boxes(30, 12));
+  const Model model = baked.model.view();
+  FrameRequest request{.at = at_key(0),
+                       .camera = fit_camera(model.bounds, 1.5),
+                       .width = 150,
+                       .height = 100,
+                       .counting = Counting::kOn};
+  for (const TechniqueInfo& technique : technique_table()) {
+    if (technique.kind == TechniqueKind::kPeer || technique.kind == TechniqueKind::kAdaptive)
+      continue;
+    Renderer fresh(model, technique.id), worn(model, technique.id);
+    for (std::uint32_t i = 0; i < 40; ++i) {  // a long stay where all has flown apart
+      request.at = at_key(model.key_count() - 1 - i % 2);
+      worn.trace(request);
+    }
+    request.at = at_key(1);
+    const bool is_same = worn.trace(request).counters == fresh.trace(request).counters;
+    EXPECT_EQ(is_same, technique.kind != TechniqueKind::kHistory) << technique.id;
+    EXPECT_EQ(count_mismatches(worn.hits(), fresh.hits()), 0u) << technique.id;
   }
 }
 

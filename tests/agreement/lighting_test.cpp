@@ -11,21 +11,13 @@
 #include "common/base/isa.h"
 #include "common/base/parallel.h"
 #include "common/trace/renderer.h"
-#include "preprocess/pipeline.h"
 #include "tests/agreement/test_scenes.h"
 
 namespace mdk {
 namespace {
 
-DecomposeResult bake(PoseSequence sequence) {
-  SilentProgress silent;
-  return decompose(std::move(sequence), {}, silent);
-}
-
-class ResetIsa {
- public:
-  ~ResetIsa() { reset_isa(); }
-};
+using test::bake;
+using test::ResetIsa;
 
 std::vector<std::uint32_t> picture(Renderer& renderer, const FrameRequest& request) {
   renderer.render(request);
@@ -125,8 +117,8 @@ class LitView {
     for (const float p : pixels_) sum += static_cast<double>(p);
     return static_cast<float>(sum / static_cast<double>(pixels_.size()));
   }
-  float least() const { return *std::min_element(pixels_.begin(), pixels_.end()); }
-  float most() const { return *std::max_element(pixels_.begin(), pixels_.end()); }
+  float min() const { return *std::min_element(pixels_.begin(), pixels_.end()); }
+  float max() const { return *std::max_element(pixels_.begin(), pixels_.end()); }
 
  private:
   static constexpr std::uint32_t kSide = 64;
@@ -164,7 +156,7 @@ TEST(Lighting, AnOpenPlaneIsLitInFullAtAnyScale) {
     const LitView view(plane.scaled(scale, offset), straight_at({}, 12, scale, offset), 16);
     ASSERT_EQ(view.pixels().size(), 64u * 64);
     EXPECT_EQ(view.rays(), 64u * 64 * 17) << "16 to the sky and one to the key light";
-    EXPECT_GT(view.least(), 0.93f * view.most()) << scale << ", " << offset.x;
+    EXPECT_GT(view.min(), 0.93f * view.max()) << scale << ", " << offset.x;
   }
 }
 

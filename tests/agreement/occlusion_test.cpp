@@ -9,21 +9,13 @@
 #include "common/base/isa.h"
 #include "common/trace/kernels/beam_kernels.h"
 #include "common/trace/technique.h"
-#include "preprocess/pipeline.h"
 #include "tests/agreement/test_scenes.h"
 
 namespace mdk {
 namespace {
 
-DecomposeResult bake(PoseSequence sequence) {
-  SilentProgress silent;
-  return decompose(std::move(sequence), {}, silent);
-}
-
-class ResetIsa {
- public:
-  ~ResetIsa() { reset_isa(); }
-};
+using test::bake;
+using test::ResetIsa;
 
 class Random {
  public:
@@ -128,7 +120,7 @@ TEST(Occlusion, EveryTechniqueOfOursFindsBruteForcesRaysOnEveryScene) {
   }
 }
 
-/// Whether the ray from `o` (relative to the basis's origin) meets the triangle, in double, and
+/// Whether the ray from `o` (relative to the basis's origin) hits the triangle, in double, and
 /// whether that is certain.
 struct PlainAnswer {
   bool hit = false, certain = true;
@@ -149,12 +141,16 @@ TEST(Occlusion, BruteForceAgreesWithAPlainTestInDouble) {
   const Model model = baked.model.view();
   PosedMesh mesh(model);
   mesh.set_time(at_key(1));
-  const TriangleSoup soup{model.triangles.data(), mesh.positions().data(), model.triangle_count()};
+  TraceScene scene;
+  scene.triangles = model.triangles.data();
+  scene.triangle_count = model.triangle_count();
+  scene.positions = mesh.positions().data();
+  TileScratch scratch;
   Random random(17);
   int checked = 0;
   for (int i = 0; i < 60; ++i) {
     RayBeam beam = make_beam(mesh, random);
-    occlude_beam_brute_force(soup, beam);
+    occlude_beam(scene, beam, scratch);
     Vec3d axis[3];
     for (int k = 0; k < 3; ++k) axis[k] = normalized(to_double(beam.basis.axis[k]));
     const double unit = 1 / length(to_double(beam.basis.axis[2]));

@@ -102,7 +102,7 @@ class PeerComparison {
 
 /// Five moments of 600 x 400 pixels, by each instruction set and peer.
 void expect_edges_only(const Model& model, const std::string& name) {
-  constexpr int kMoments = 5, kMostDifferent = 10;
+  constexpr int kMoments = 5, kMaxDifferent = 10;
   Renderer ours(model, "fuzzy-bvh");  // brute force's hits, as all of agreement_test says
   for (const TechniqueInfo& technique : technique_table()) {
     if (technique.kind != TechniqueKind::kPeer) continue;
@@ -123,7 +123,7 @@ void expect_edges_only(const Model& model, const std::string& name) {
             << name << ", " << technique.id << ", " << isa << ", moment " << i;
         different += comparison.different();
       }
-      EXPECT_LE(different, kMostDifferent) << name << ", " << technique.id << ", " << isa;
+      EXPECT_LE(different, kMaxDifferent) << name << ", " << technique.id << ", " << isa;
       if (different > 0)
         std::cout << name << ", " << technique.id << ", " << isa << ": " << different
                   << " of 1,200,000 pixels differ\n";

@@ -11,16 +11,13 @@
 
 #include "common/base/isa.h"
 #include "common/base/parallel.h"
-#include "preprocess/pipeline.h"
 #include "tests/agreement/test_scenes.h"
 
 namespace mdk {
 namespace {
 
-DecomposeResult bake(PoseSequence sequence) {
-  SilentProgress silent;
-  return decompose(std::move(sequence), {}, silent);
-}
+using test::bake;
+using test::ResetIsa;
 
 /// All vertices at a moment.
 std::vector<Vec3f> vertices_at(const Model& model, const KeyInterval& at) {
@@ -78,11 +75,6 @@ class RayMaker {
 
   const Model& model_;
   std::mt19937 random_;
-};
-
-class ResetIsa {
- public:
-  ~ResetIsa() { reset_isa(); }
 };
 
 TEST(RayQuery, GivesBruteForcesHitAtEveryRaysOwnTime) {
@@ -180,6 +172,33 @@ TEST(RayQuery, RangesOfTAreOpenBelowAndClosedAbove) {
   EXPECT_GT(query.closest_hit(ray, at).t, first.t);
 }
 
+TEST(RayQuery, RangesThatBeginBehindTheOriginGiveBruteForcesHit) {
+  const ResetIsa reset;
+  const DecomposeResult baked = bake(test::bending_tube(20, 16, 4));
+  const Model model = baked.model.view();
+  const RayQuery query(model);
+  RayMaker make(model, 29);
+  const float inf = std::numeric_limits<float>::infinity();
+  int behind = 0;
+  for (int i = 0; i < 300; ++i) {
+    const KeyInterval at = make.time();
+    QueryRay ray = make.ray(at);
+    if (i % 8 != 0) ray.direction = -ray.direction;  // what it is aimed at is behind
+    const float unit = model.bounds.diagonal() / length(ray.direction);
+    ray.t_min = i % 4 == 0 ? -inf : -static_cast<float>(i % 7) * 0.3f * unit;
+    if (i % 3 == 0) ray.t_max = i % 2 == 0 ? 0 : ray.t_min * 0.25f;  // all of it behind
+    const QueryHit expected = brute_force_closest_hit(model, ray, at);
+    behind += expected.triangle != kNoHit && expected.t < 0;
+    for (const std::string_view isa : available_isas()) {
+      limit_isa(isa);
+      EXPECT_TRUE(is_same(query.closest_hit(ray, at), expected)) << "ray " << i << ", " << isa;
+      EXPECT_EQ(query.any_hit(ray, at), expected.triangle != kNoHit) << "ray " << i << ", " << isa;
+    }
+    reset_isa();
+  }
+  EXPECT_GT(behind, 50);
+}
+
 TEST(RayQuery, AListAtMixedTimesGivesWhatEachRayGivesOnAnyNumberOfThreads) {
   const DecomposeResult baked = bake(test::flying_boxes(12, 6));
   const Model model = baked.model.view();
@@ -242,7 +261,7 @@ bool is_inside(const Model& model, const Vec3f& point, const KeyInterval& at) {
 }
 
 TEST(RayQuery, NoRayLeavesAClosedMeshInMotion) {
-  // From the axis of a bent, swelling tube every ray must meet its wall, at every time; most are
+  // From the axis of a bent, swelling tube every ray must hit its wall, at every time; most are
   // aimed at vertices and edges, where neighbours meet and clusters part.
   const DecomposeResult baked = bake(test::bending_tube(40, 24, 12));
   const Model model = baked.model.view();

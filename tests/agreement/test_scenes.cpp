@@ -5,6 +5,7 @@
 #include <map>
 #include <numbers>
 #include <random>
+#include <utility>
 
 namespace mdk::test {
 namespace {
@@ -189,6 +190,11 @@ std::vector<NamedSequence> agreement_scenes() {
     for (std::size_t i = 0; i < still.vertex_count; ++i) still.pose(k)[i] = still.pose(0)[i];
   scenes.push_back({"does not move", std::move(still)});
   return scenes;
+}
+
+DecomposeResult bake(PoseSequence sequence) {
+  SilentProgress silent;
+  return decompose(std::move(sequence), {}, silent);
 }
 
 }  // namespace mdk::test

@@ -5,7 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "common/base/isa.h"
 #include "common/motion/pose_sequence.h"
+#include "preprocess/pipeline.h"
 
 namespace mdk::test {
 
@@ -34,5 +36,14 @@ PoseSequence flying_boxes(std::uint32_t count, std::uint32_t keys);
 /// All of the above and degenerate ones: a flat sheet, one triangle, one key, a mesh that collapses
 /// to a point, coordinates far from the origin and tiny ones.
 std::vector<NamedSequence> agreement_scenes();
+
+/// Decomposed with the default options.
+DecomposeResult bake(PoseSequence sequence);
+
+/// Any instruction set is allowed again at the end of a test.
+class ResetIsa {
+ public:
+  ~ResetIsa() { reset_isa(); }
+};
 
 }  // namespace mdk::test

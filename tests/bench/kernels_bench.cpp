@@ -12,6 +12,7 @@
 #include "common/motion/posed_mesh.h"
 #include "common/structures/kd_tree_builder.h"
 #include "common/structures/wide_bvh.h"
+#include "common/trace/cluster_trees.h"
 #include "common/trace/kernels/tile_kernels.h"
 
 namespace mdk {
@@ -66,12 +67,18 @@ class Picture {
     hits_.resize(kImageSide, kImageSide);
   }
 
-  void trace(const WideBvh& bvh, const BlockSoup& soup) {
-    const BvhView view{bvh.nodes, 0,
-                       make_frustum_forms(make_frustum_basis(rays_), bvh.nodes[0].box())};
+  void trace(const WideBvh& bvh, std::span<const TriangleBlock> blocks, const PosedMesh& mesh,
+             ProjectionCache* cache) {
+    TraceScene scene;
+    scene.positions = mesh.positions().data();
+    scene.blocks = blocks;
+    scene.projected_blocks = cache;
+    TreeLevel<BvhView>& top = scene.structure.emplace<BvhLevels>().top;
+    top.tree = {bvh.nodes, 0};
+    top.forms = make_frustum_forms(rays_, Affine3d{}, bvh.nodes[0].box());
     for (std::size_t i = 0; i < hits_.tile_count(); ++i) {
       const TileRays tile{&rays_, &pixel_from_world_, hits_.tile_left(i), hits_.tile_top(i)};
-      hits_.set_hit(i, trace_tile_bvh(tile, view, soup, hits_.tile(i), scratch_, nullptr));
+      hits_.set_hit(i, trace_tile(tile, scene, hits_.tile(i), scratch_, nullptr));
     }
     benchmark::DoNotOptimize(hits_.tile(0).t[0]);
   }
@@ -95,7 +102,7 @@ void NodeCulling(benchmark::State& state) {
   const WideBvh bvh = build_wide_bvh(sheet.boxes(), 16);
   const std::vector<TriangleBlock> blocks(bvh.leaf_count());
   Picture picture;
-  for (auto _ : state) picture.trace(bvh, {blocks, sheet.mesh().positions().data(), nullptr});
+  for (auto _ : state) picture.trace(bvh, blocks, sheet.mesh(), nullptr);
   state.SetItemsProcessed(items(state, sheet.boxes().size()));
 }
 BENCHMARK(NodeCulling)->Arg(90)->Arg(350)->Unit(benchmark::kMillisecond);
@@ -111,7 +118,7 @@ void Triangles(benchmark::State& state, bool keep) {
   Picture picture;
   for (auto _ : state) {
     cache.begin_frame(blocks.size());
-    picture.trace(bvh, {blocks, sheet.mesh().positions().data(), keep ? &cache : nullptr});
+    picture.trace(bvh, blocks, sheet.mesh(), keep ? &cache : nullptr);
   }
   state.SetItemsProcessed(items(state, sheet.boxes().size()));
 }

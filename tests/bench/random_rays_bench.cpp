@@ -1,6 +1,6 @@
-// What a random ray costs: times rays that meet each model's box as the cost of a decomposition
+// What a random ray costs: times rays that hit each model's box as the cost of a decomposition
 // counts them (docs/method.md, cost), that is lines without a preferred place or direction, and
-// prints a line per file: its name, its clusters, how many of them a ray is expected to meet,
+// prints a line per file: its name, its clusters, how many of them a ray is expected to enter,
 // nanoseconds a ray, and the share of rays that hit.
 //
 //     random_rays_bench FILE.mdk…
@@ -32,7 +32,7 @@ mdk::Aabb box_at(mdk::PosedMesh& mesh, const mdk::KeyInterval& at) {
   return box;
 }
 
-/// Lines that meet a box, each equally likely (isotropic, uniform): they enter it at a point of a
+/// Lines that hit a box, each equally likely (isotropic, uniform): they enter it at a point of a
 /// face drawn by area, at an angle drawn by its cosine.
 std::vector<mdk::QueryRay> random_lines(const mdk::Aabb& box, std::mt19937_64& engine) {
   std::uniform_real_distribution<float> unit(0, 1);
@@ -58,8 +58,8 @@ std::vector<mdk::QueryRay> random_lines(const mdk::Aabb& box, std::mt19937_64& e
   return rays;
 }
 
-/// Clusters whose world boxes a line is expected to meet that meets the model's box.
-double clusters_met(const mdk::Model& model, std::uint32_t key, const mdk::Aabb& box) {
+/// Clusters whose world boxes a line that hits the model's box is expected to enter.
+double clusters_entered(const mdk::Model& model, std::uint32_t key, const mdk::Aabb& box) {
   double area = 0;
   for (std::size_t c = 0; c < model.cluster_count(); ++c)
     area += model.world_box(key, c).surface_area();
@@ -67,7 +67,7 @@ double clusters_met(const mdk::Model& model, std::uint32_t key, const mdk::Aabb&
 }
 
 struct Cost {
-  double met = 0;          ///< clusters
+  double entered = 0;      ///< clusters
   double nanoseconds = 0;  ///< a ray
   double hits = 0;         ///< share of the rays
 };
@@ -101,12 +101,12 @@ void measure(const char* path) {
     const mdk::Aabb box = box_at(mesh, at);
     const auto moment = query.prepare(at);
     const Cost cost = cost_of(query, random_lines(box, engine), *moment);
-    mean.met += clusters_met(model, key, box) / keys;
+    mean.entered += clusters_entered(model, key, box) / keys;
     mean.nanoseconds += cost.nanoseconds / keys;
     mean.hits += cost.hits / keys;
   }
   std::printf("%s %u %.3f %.1f %.4f\n", std::filesystem::path(path).stem().c_str(),
-              model.cluster_count(), mean.met, mean.nanoseconds, mean.hits);
+              model.cluster_count(), mean.entered, mean.nanoseconds, mean.hits);
   std::fflush(stdout);
 }
 

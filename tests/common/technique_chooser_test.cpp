@@ -10,16 +10,16 @@
 namespace mdk {
 namespace {
 
-constexpr double kCheapMs = 0.001, kDearMs = 0.05;
+constexpr double kCheapMs = 0.001, kExpensiveMs = 0.05;
 
-std::atomic<int> dear_updates;
+std::atomic<int> expensive_updates;
 
 /// Spins for a while per tile, and says in every hit who it was.
 template <int kId>
 class SpinningTechnique final : public Technique {
  public:
-  SpinningTechnique() : cost_ms_(kId == 0 ? kDearMs : kCheapMs) {}
-  void update(const PosedMesh&) override { dear_updates += kId == 0; }
+  SpinningTechnique() : cost_ms_(kId == 0 ? kExpensiveMs : kCheapMs) {}
+  void update(const PosedMesh&) override { expensive_updates += kId == 0; }
   void occlude(RayBeam&, TileScratch&) const override {}
   bool trace(const TileRays&, TileHits& hits, TileScratch&,
              TraceCounters* counters) const override {
@@ -41,10 +41,10 @@ std::unique_ptr<Technique> make_spinning(const Model&) {
   return std::make_unique<SpinningTechnique<kId>>();
 }
 
-constexpr TechniqueCandidate kDearFirst[] = {{"dear", make_spinning<0>},
-                                             {"cheap", make_spinning<1>}};
+constexpr TechniqueCandidate kExpensiveFirst[] = {{"expensive", make_spinning<0>},
+                                                  {"cheap", make_spinning<1>}};
 constexpr TechniqueCandidate kCheapFirst[] = {{"cheap", make_spinning<1>},
-                                              {"dear", make_spinning<0>}};
+                                              {"expensive", make_spinning<0>}};
 
 class TechniqueChooserTest : public testing::Test {
  protected:
@@ -53,7 +53,7 @@ class TechniqueChooserTest : public testing::Test {
     storage_.key_times = {0};
     storage_.poses.key_positions = {{0, 0, 0}};
     storage_.bounds = {{-1, -1, -1}, {1, 1, 1}};
-    dear_updates = 0;
+    expensive_updates = 0;
   }
 
   /// Plays frames of 16x16 tiles; returns whose hits the last frame shows.
@@ -94,33 +94,33 @@ class TechniqueChooserTest : public testing::Test {
 };
 
 TEST_F(TechniqueChooserTest, SettlesOnTheCheapestWhereverItStands) {
-  for (const auto& candidates : {std::span(kDearFirst), std::span(kCheapFirst)}) {
+  for (const auto& candidates : {std::span(kExpensiveFirst), std::span(kCheapFirst)}) {
     TechniqueChooser chooser(model_, candidates);
     EXPECT_EQ(play(chooser, near_, 12), 1u);
     EXPECT_EQ(chooser.note().rfind("cheap, ", 0), 0u) << chooser.note();
-    EXPECT_NE(chooser.note().find("dear +"), std::string::npos) << chooser.note();
+    EXPECT_NE(chooser.note().find("expensive +"), std::string::npos) << chooser.note();
   }
 }
 
 TEST_F(TechniqueChooserTest, TriesAHopelessCandidateSeldom) {
   TechniqueChooser chooser(model_, kCheapFirst);
   play(chooser, near_, 12);
-  const int at_first = dear_updates;
+  const int at_first = expensive_updates;
   EXPECT_GE(at_first, 1);
   EXPECT_LE(at_first, 2);
   play(chooser, near_, 60);
-  EXPECT_LE(dear_updates, at_first + 1);
+  EXPECT_LE(expensive_updates, at_first + 1);
 }
 
 TEST_F(TechniqueChooserTest, RemembersAViewItKnows) {
   TechniqueChooser chooser(model_, kCheapFirst);
   play(chooser, near_, 6);
   play(chooser, far_, 6);
-  const int tried = dear_updates;
+  const int tried = expensive_updates;
   EXPECT_GE(tried, 2) << "a new view is measured anew";
   play(chooser, near_, 6);
   play(chooser, far_, 6);
-  EXPECT_EQ(dear_updates, tried);
+  EXPECT_EQ(expensive_updates, tried);
 }
 
 TEST_F(TechniqueChooserTest, CountsOnlyTheWorkThatMadeThePicture) {

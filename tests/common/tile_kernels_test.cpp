@@ -9,10 +9,12 @@
 #include <cmath>
 #include <limits>
 #include <random>
+#include <type_traits>
 #include <vector>
 
 #include "common/base/isa.h"
 #include "common/structures/kd_tree_builder.h"
+#include "common/trace/cluster_trees.h"
 
 namespace mdk {
 namespace {
@@ -36,30 +38,37 @@ class Trial {
   int mismatches(const Camera& camera) {
     const PinholeRays rays = make_pinhole_rays(camera, kWidth, kHeight);
     const PixelFromWorld pixel_from_world = make_pixel_from_world(rays);
-    const TriangleSoup soup{triangles_.data(), positions_.data(),
-                            static_cast<std::uint32_t>(triangles_.size())};
-    const FrustumBasis basis = make_frustum_basis(rays);
+    const auto level = [&](const auto& tree, const Aabb& bounds) {
+      TreeLevel<std::decay_t<decltype(tree)>> result{};
+      result.tree = tree;
+      result.forms = make_frustum_forms(rays, Affine3d{}, bounds);
+      return result;
+    };
     const WideBvh bvh = collapse(build_bvh(boxes_, {.max_leaf = 1}));
     std::vector<TriangleBlock> blocks;
     append_blocks(bvh, triangles_, 0, blocks);
-    const BvhView bvh_view{bvh.nodes, 0, make_frustum_forms(basis, bvh.nodes[0].box())};
+    EXPECT_EQ(validate(blocks, triangles_), "");
     ProjectionCache cache;
     cache.begin_frame(blocks.size());
     const KdTree kd = build_kd_tree(boxes_, 0, {.intersect_cost = 50.0f});
-    const KdView kd_view{kd.view(), make_frustum_forms(basis, kd.bounds)};
+    TraceScene scenes[4];  // all triangles, a hierarchy, one that keeps its blocks, a kd-tree
+    for (TraceScene& scene : scenes) {
+      scene.triangles = triangles_.data();
+      scene.triangle_count = static_cast<std::uint32_t>(triangles_.size());
+      scene.positions = positions_.data();
+      scene.blocks = blocks;
+    }
+    scenes[1].structure = BvhLevels{level(BvhView{bvh.nodes, 0}, bvh.nodes[0].box()), {}, {}};
+    scenes[2].structure = scenes[1].structure;
+    scenes[2].projected_blocks = &cache;
+    scenes[3].structure = KdLevels{level(kd.view(), kd.bounds), {}, {}};
     for (HitBuffer& hits : hits_) hits.resize(kTileSide, kTileSide);
     int different = 0;
     for (std::uint32_t y = 0; y < kHeight; y += kTileSide)
       for (std::uint32_t x = 0; x < kWidth; x += kTileSide) {
         const TileRays tile{&rays, &pixel_from_world, x, y};
-        const auto put = [&](std::size_t k, bool is_hit) { hits_[k].set_hit(0, is_hit); };
-        const auto hits = [&](std::size_t k) -> TileHits& { return hits_[k].tile(0); };
-        put(0, trace_tile_brute_force(tile, soup, hits(0), scratch_, nullptr));
-        put(1, trace_tile_bvh(tile, bvh_view, {blocks, positions_.data(), nullptr}, hits(1),
-                              scratch_, nullptr));
-        put(2, trace_tile_bvh(tile, bvh_view, {blocks, positions_.data(), &cache}, hits(2),
-                              scratch_, nullptr));
-        put(3, trace_tile_kd(tile, kd_view, soup, hits(3), scratch_, nullptr));
+        for (std::size_t k = 0; k < 4; ++k)
+          hits_[k].set_hit(0, trace_tile(tile, scenes[k], hits_[k].tile(0), scratch_, nullptr));
         hit_count_ += static_cast<int>(count_hits(hits_[0]));
         for (std::size_t k = 1; k < 4; ++k)
           different += static_cast<int>(count_mismatches(hits_[0], hits_[k]));
@@ -199,11 +208,14 @@ TEST_P(TileKernels, CornersThatAreNotNumbersAreNeverHit) {
   for (const float bad : {nan, inf, -inf}) {
     const std::vector<Vec3f> positions = {{bad, 0, 0}, {1, -1, 0}, {-1, -1, 0}, {0, bad, bad}};
     const std::vector<Triangle> triangles = {{{0, 1, 2}}, {{1, 0, 2}}, {{3, 1, 2}}, {{0, 0, 3}}};
-    const TriangleSoup soup{triangles.data(), positions.data(), 4};
+    TraceScene scene;
+    scene.triangles = triangles.data();
+    scene.triangle_count = 4;
+    scene.positions = positions.data();
     TileHits hits;
     TileScratch scratch;
     const TileRays tile{&rays, &pixel_from_world, 16, 32};
-    EXPECT_FALSE(trace_tile_brute_force(tile, soup, hits, scratch, nullptr));
+    EXPECT_FALSE(trace_tile(tile, scene, hits, scratch, nullptr));
   }
 }
 

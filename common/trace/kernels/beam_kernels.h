@@ -1,71 +1,71 @@
-// Which rays of a beam meet the mesh, behind run-time dispatch. docs/lighting.md explains the
-// geometry.
+// RayBeam: parallel rays without end, as shadows of a distant light and a sky ask for them, and
+// which of them hit the mesh. Seen along their direction each ray is a point, so all of them share
+// every projection of a triangle (docs/lighting.md).
+//
+//        w, the rays' direction          u, v: across; a ray is a point (u, v) and the
+//          ^   ^    ^  ^                       depth w it starts at
+//          |   |    |  |
+//        --o---o----o--o--> u, v
 #pragma once
 
+#include <cmath>
 #include <cstdint>
-#include <span>
 
-#include "common/math/aabb.h"
-#include "common/math/affine3.h"
-#include "common/trace/kernels/frame_cache.h"
+#include "common/math/vec3.h"
+#include "common/trace/hit_buffer.h"
 #include "common/trace/kernels/tile_kernels.h"
-#include "common/trace/ray_beam.h"
 
 namespace mdk {
 
-/// How forms over the world read in a basis (the world's own, or a cluster's), for boxes inside its
-/// bounds. A plane's normal n becomes cofactor n, so no map need be inverted: near singular ones
-/// only cull less.
-struct BeamSpace {
-  Affine3d local_from_world;
-  Vec3d cofactor[3];       ///< columns: (cofactor n) . q = det (n . p) for q the image of p
-  double det = 1;          ///< of the linear part, its size
-  double rounding = 0;     ///< bounds what the cofactors' columns may have lost, per component
-  Vec3d reach;             ///< of local coordinates from 0
-  double world_reach = 0;  ///< of the mesh from a beam's origin, summed over axes
+/// A right-angled basis about a point of the world: (u, v, w) of p are the dot products of the
+/// axes, which are of one length, with p - origin.
+struct BeamBasis {
+  Vec3f axis[3];  ///< across, across, along
+  Vec3f origin;
 };
 
-/// A cluster's basis, or the world's, for boxes inside `bounds`. `mesh` holds all that beams start
-/// from and may meet.
-BeamSpace make_beam_space(const Affine3d& local_from_world, const Aabb& bounds, const Aabb& mesh);
+/// A basis whose axes have the length `scale`, w along `direction`, a unit vector (Duff et al.
+/// 2017).
+inline BeamBasis make_beam_basis(const Vec3f& direction, const Vec3f& origin, float scale) {
+  const Vec3f& n = direction;
+  const float sign = std::copysign(1.0f, n.z);
+  const float a = -1 / (sign + n.z), b = n.x * n.y * a;
+  const Vec3f u{1 + sign * n.x * n.x * a, sign * b, -sign * n.x};
+  const Vec3f v{b, sign + n.y * n.y * a, -n.y};
+  return {{u * scale, v * scale, n * scale}, origin};
+}
 
-/// Structures with the basis their boxes are in.
-struct BeamBvh {
-  std::span<const WideBvhNode> nodes;
-  std::uint32_t first_leaf;  ///< leaf i is block `first_leaf` + i
-  const BeamSpace* space;
-};
-struct BeamTopLevel {
-  BeamBvh tree;
-  std::span<const std::uint32_t> cluster_of_leaf;
-  std::span<const BeamBvh> clusters;
-};
-struct BeamKd {
-  KdTreeView tree;
-  const BeamSpace* space;
+/// As many rays as are tested together.
+inline constexpr std::uint32_t kBeamGroup = 16;
+inline constexpr std::uint32_t kBeamGroups = kTilePixels / kBeamGroup;
+
+struct alignas(64) RayBeam {
+  BeamBasis basis;
+  std::uint32_t count = 0;           ///< of rays, at most kTilePixels
+  alignas(64) float u[kTilePixels];  ///< where each ray starts
+  alignas(64) float v[kTilePixels];
+  alignas(64) float w[kTilePixels];
+  std::uint16_t occluded[kBeamGroups];  ///< a bit per ray, rays of a group in order: the answer
+
+  void clear(const BeamBasis& b) {
+    basis = b;
+    count = 0;
+    for (std::uint16_t& bits : occluded) bits = 0;
+  }
+  /// A ray from `p`, given relative to the basis's origin.
+  void push(const Vec3f& p) {
+    u[count] = dot(basis.axis[0], p);
+    v[count] = dot(basis.axis[1], p);
+    w[count] = dot(basis.axis[2], p);
+    ++count;
+  }
+  bool is_occluded(std::uint32_t ray) const {
+    return (occluded[ray / kBeamGroup] >> (ray % kBeamGroup) & 1u) != 0;
+  }
 };
 
-/// The corners of a block's triangles, side by side.
-struct alignas(64) PosedBlock {
-  float x[3][kBlockTriangles], y[3][kBlockTriangles], z[3][kBlockTriangles];
-};
-using PosedBlockCache = FrameCache<PosedBlock, 1 << 18>;
-
-/// The present triangles leaf by leaf.
-struct BeamBlocks {
-  std::span<const TriangleBlock> blocks;
-  const Vec3f* positions;
-  PosedBlockCache* cache;  ///< in which the frame was begun
-};
-
-/// All find the same rays, bit for bit, on every machine: structures only choose which triangles
-/// are tested.
-void occlude_beam_brute_force(const TriangleSoup& soup, RayBeam& beam);
-void occlude_beam_bvh(const BeamBvh& tree, const BeamBlocks& blocks, RayBeam& beam);
-void occlude_beam_two_level_bvh(const BeamTopLevel& top, const BeamBlocks& blocks, RayBeam& beam);
-void occlude_beam_kd(const BeamKd& tree, const TriangleSoup& soup, RayBeam& beam,
-                     TileScratch& scratch);
-void occlude_beam_two_level_kd(const BeamKd& top, std::span<const BeamKd> clusters,
-                               const TriangleSoup& soup, RayBeam& beam, TileScratch& scratch);
+/// Marks the rays that hit the scene. The same rays with every structure and on every machine, to
+/// the bit. All of the mesh must be posed.
+void occlude_beam(const TraceScene& scene, RayBeam& beam, TileScratch& scratch);
 
 }  // namespace mdk

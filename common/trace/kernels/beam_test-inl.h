@@ -11,8 +11,8 @@
 // larger w: that is all that boxes are culled by.
 #include <limits>
 
+#include "common/simd/lanes-inl.h"
 #include "common/trace/kernels/beam_kernels.h"
-#include "common/trace/kernels/projection-inl.h"
 
 #if defined(MDK_BEAM_TEST_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef MDK_BEAM_TEST_INL_H_
@@ -24,11 +24,11 @@
 HWY_BEFORE_NAMESPACE();
 namespace mdk {
 namespace HWY_NAMESPACE {
-namespace hn = hwy::HWY_NAMESPACE;
+namespace beams {
 
 static_assert(kBeamGroup == kBlockTriangles);
 
-/// Where rays start: nothing that ends below `w` or lies beside [u0, u1] x [v0, v1] is met.
+/// Where rays start: nothing that ends below `w` or lies beside [u0, u1] x [v0, v1] is hit.
 struct BeamBounds {
   float u0, u1, v0, v1, w;
 };
@@ -38,10 +38,7 @@ HWY_INLINE void pose_block(const TriangleBlock& block, const Vec3f* positions, P
   const FloatTag d;
   for (std::size_t i = 0; i < block.count; i += hn::Lanes(d))
     for (std::size_t k = 0; k < 3; ++k) {
-      const Points p = gather_points(block.corner[k] + i, positions);
-      hn::Store(p.x, d, out.x[k] + i);
-      hn::Store(p.y, d, out.y[k] + i);
-      hn::Store(p.z, d, out.z[k] + i);
+      store(d, gather(d, block.corner[k] + i, positions), out.x[k] + i, out.y[k] + i, out.z[k] + i);
     }
 }
 
@@ -59,11 +56,11 @@ class BeamRays {
       const std::size_t g = first / kBeamGroup;
       alive_[g] = static_cast<std::uint16_t>((1u << rays) - 1u);
       groups_ |= 1u << g;
-      group_u0_[g] = over_group<Least>(beam.u + first);
-      group_u1_[g] = over_group<Largest>(beam.u + first);
-      group_v0_[g] = over_group<Least>(beam.v + first);
-      group_v1_[g] = over_group<Largest>(beam.v + first);
-      group_w_[g] = over_group<Least>(beam.w + first);
+      group_u0_[g] = min_of_sixteen(beam.u + first);
+      group_u1_[g] = max_of_sixteen(beam.u + first);
+      group_v0_[g] = min_of_sixteen(beam.v + first);
+      group_v1_[g] = max_of_sixteen(beam.v + first);
+      group_w_[g] = min_of_sixteen(beam.w + first);
     }
     set_bounds();
   }
@@ -76,9 +73,9 @@ class BeamRays {
 
   /// `count`: of the block's triangles.
   void test(const PosedBlock& block, std::uint32_t count) {
-    std::uint32_t met = project(block, count);
-    for (; met != 0 && groups_ != 0; met &= met - 1)
-      test_triangle(static_cast<std::size_t>(__builtin_ctz(met)));
+    std::uint32_t near = project(block, count);
+    for (; near != 0 && groups_ != 0; near &= near - 1)
+      test_triangle(static_cast<std::size_t>(__builtin_ctz(near)));
     if (!changed_) return;
     changed_ = false;
     set_bounds();
@@ -92,77 +89,74 @@ class BeamRays {
         v1[kBlockTriangles], w1[kBlockTriangles];
   };
   /// A triangle past this is not finite, or as good as.
-  static constexpr float kLargest = 1e30f;
+  static constexpr float kMaxCoordinate = 1e30f;
 
-  static HWY_INLINE FloatVec least(const FloatVec (&x)[3]) {
+  static HWY_INLINE FloatVec min_of(const FloatVec (&x)[3]) {
     return hn::Min(hn::Min(x[0], x[1]), x[2]);
   }
-  static HWY_INLINE FloatVec largest(const FloatVec (&x)[3]) {
+  static HWY_INLINE FloatVec max_of(const FloatVec (&x)[3]) {
     return hn::Max(hn::Max(x[0], x[1]), x[2]);
   }
   static HWY_INLINE FloatVec sizes(const FloatVec (&x)[3]) {
     return hn::Add(hn::Add(hn::Abs(x[0]), hn::Abs(x[1])), hn::Abs(x[2]));
   }
 
-  /// Which triangles of the block some ray may meet; fills projected_.
+  /// Which triangles of the block some ray may hit; fills projected_.
   HWY_INLINE std::uint32_t project(const PosedBlock& block, std::uint32_t count) {
     const FloatTag d;
     const BeamBasis& basis = beam_.basis;
-    std::uint32_t met = 0;
+    std::uint32_t near = 0;
     for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
       FloatVec u[3], v[3], w[3];
       for (std::size_t k = 0; k < 3; ++k) {
-        const Points r{hn::Sub(hn::Load(d, block.x[k] + i), hn::Set(d, basis.origin.x)),
-                       hn::Sub(hn::Load(d, block.y[k] + i), hn::Set(d, basis.origin.y)),
-                       hn::Sub(hn::Load(d, block.z[k] + i), hn::Set(d, basis.origin.z))};
-        const auto along = [&](const Vec3f& axis) {
-          return dot_product({hn::Set(d, axis.x), hn::Set(d, axis.y), hn::Set(d, axis.z)}, r);
-        };
-        u[k] = along(basis.axis[0]);
-        v[k] = along(basis.axis[1]);
-        w[k] = along(basis.axis[2]);
+        const Points<FloatTag> corner{hn::Load(d, block.x[k] + i), hn::Load(d, block.y[k] + i),
+                                      hn::Load(d, block.z[k] + i)};
+        const auto r = corner - broadcast(d, basis.origin);
+        u[k] = dot(broadcast(d, basis.axis[0]), r);
+        v[k] = dot(broadcast(d, basis.axis[1]), r);
+        w[k] = dot(broadcast(d, basis.axis[2]), r);
         hn::Store(u[k], d, projected_.u[k] + i);
         hn::Store(v[k], d, projected_.v[k] + i);
         hn::Store(w[k], d, projected_.w[k] + i);
       }
-      const auto u0 = least(u), u1 = largest(u), v0 = least(v), v1 = largest(v), w1 = largest(w);
+      const auto u0 = min_of(u), u1 = max_of(u), v0 = min_of(v), v1 = max_of(v), w1 = max_of(w);
       hn::Store(u0, d, projected_.u0 + i);
       hn::Store(u1, d, projected_.u1 + i);
       hn::Store(v0, d, projected_.v0 + i);
       hn::Store(v1, d, projected_.v1 + i);
       hn::Store(w1, d, projected_.w1 + i);
       const auto sound =
-          hn::Lt(hn::Add(hn::Add(sizes(u), sizes(v)), sizes(w)), hn::Set(d, kLargest));
+          hn::Lt(hn::Add(hn::Add(sizes(u), sizes(v)), sizes(w)), hn::Set(d, kMaxCoordinate));
       const auto beside_u =
           hn::Or(hn::Lt(u1, hn::Set(d, bounds_.u0)), hn::Gt(u0, hn::Set(d, bounds_.u1)));
       const auto beside_v =
           hn::Or(hn::Lt(v1, hn::Set(d, bounds_.v0)), hn::Gt(v0, hn::Set(d, bounds_.v1)));
       const auto outside = hn::Or(hn::Or(beside_u, beside_v), hn::Lt(w1, hn::Set(d, bounds_.w)));
-      met |= bits_of(hn::AndNot(outside, sound)) << i;
+      near |= mask_bits(d, hn::AndNot(outside, sound)) << i;
     }
-    return met & ((1u << count) - 1u);
+    return near & ((1u << count) - 1u);
   }
 
   HWY_INLINE void test_triangle(std::size_t t) {
     std::uint32_t groups = groups_;
-    if ((groups & (groups - 1)) != 0) groups &= groups_beside(t);
+    if ((groups & (groups - 1)) != 0) groups &= groups_overlapping(t);
     for (; groups != 0; groups &= groups - 1)
       test_group(t, static_cast<std::size_t>(__builtin_ctz(groups)));
   }
 
-  /// Groups whose bounds the triangle's touch.
-  HWY_INLINE std::uint32_t groups_beside(std::size_t t) const {
+  /// Groups whose bounds the triangle's overlap.
+  HWY_INLINE std::uint32_t groups_overlapping(std::size_t t) const {
     const FloatTag d;
-    std::uint32_t met = 0;
+    std::uint32_t near = 0;
     for (std::size_t i = 0; i < kBeamGroups; i += hn::Lanes(d)) {
       const auto u = hn::And(hn::Ge(hn::Set(d, projected_.u1[t]), hn::Load(d, group_u0_ + i)),
                              hn::Le(hn::Set(d, projected_.u0[t]), hn::Load(d, group_u1_ + i)));
       const auto v = hn::And(hn::Ge(hn::Set(d, projected_.v1[t]), hn::Load(d, group_v0_ + i)),
                              hn::Le(hn::Set(d, projected_.v0[t]), hn::Load(d, group_v1_ + i)));
       const auto w = hn::Ge(hn::Set(d, projected_.w1[t]), hn::Load(d, group_w_ + i));
-      met |= bits_of(hn::And(hn::And(u, v), w)) << i;
+      near |= mask_bits(d, hn::And(hn::And(u, v), w)) << i;
     }
-    return met;
+    return near;
   }
 
   HWY_INLINE void test_group(std::size_t t, std::size_t g) {
@@ -190,7 +184,7 @@ class BeamRays {
       const auto depth_b = hn::Mul(hn::Abs(eb), hn::Sub(set(projected_.w[1]), ow));
       const auto depth_c = hn::Mul(hn::Abs(ec), hn::Sub(set(projected_.w[2]), ow));
       const auto beyond = hn::Gt(hn::Add(hn::Add(depth_a, depth_b), depth_c), zero);
-      hit |= bits_of(hn::And(inside, beyond)) << i;
+      hit |= mask_bits(d, hn::And(inside, beyond)) << i;
     }
     if ((hit & alive_[g]) != 0) occlude(g, hit & alive_[g]);
   }
@@ -201,23 +195,6 @@ class BeamRays {
     if (alive_[g] != 0) return;
     groups_ &= ~(1u << g);
     changed_ = true;
-  }
-
-  struct Least {
-    static HWY_INLINE FloatVec of(FloatVec a, FloatVec b) { return hn::Min(a, b); }
-    static HWY_INLINE FloatVec of_lanes(FloatVec a) { return hn::MinOfLanes(FloatTag(), a); }
-  };
-  struct Largest {
-    static HWY_INLINE FloatVec of(FloatVec a, FloatVec b) { return hn::Max(a, b); }
-    static HWY_INLINE FloatVec of_lanes(FloatVec a) { return hn::MaxOfLanes(FloatTag(), a); }
-  };
-  template <class Which>
-  static HWY_INLINE float over_group(const float* values) {
-    const FloatTag d;
-    auto result = hn::Load(d, values);
-    for (std::size_t i = hn::Lanes(d); i < kBeamGroup; i += hn::Lanes(d))
-      result = Which::of(result, hn::Load(d, values + i));
-    return hn::GetLane(Which::of_lanes(result));
   }
 
   void set_bounds() {
@@ -249,6 +226,7 @@ class BeamRays {
   Projected projected_;
 };
 
+}  // namespace beams
 }  // namespace HWY_NAMESPACE
 }  // namespace mdk
 HWY_AFTER_NAMESPACE();

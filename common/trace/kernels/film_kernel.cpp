@@ -9,12 +9,13 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 // after highway.h
+#include "common/simd/lanes-inl.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace mdk {
 namespace HWY_NAMESPACE {
-namespace hn = hwy::HWY_NAMESPACE;
+namespace films {
 
-using FloatTag = hn::CappedTag<float, kTileSide>;
 using ByteTag = hn::RebindToSigned<FloatTag>;  ///< a byte in each lane
 
 /// As srgb_from_linear(), lane by lane.
@@ -54,6 +55,8 @@ void Develop(const TileColors& colors, const std::uint32_t* background, std::uin
     std::copy_n(tile + row * kTileSide, columns, pixels);
 }
 
+}  // namespace films
+using films::Develop;
 }  // namespace HWY_NAMESPACE
 }  // namespace mdk
 HWY_AFTER_NAMESPACE();

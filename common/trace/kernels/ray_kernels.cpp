@@ -3,7 +3,7 @@
 // places: two triangles that share an edge agree on which side the ray passes.
 //
 //     hit where the three weights have one sign, each give or take its rounding: also a ray that
-//     meets a vertex exactly, where all signs are rounding, hits one of the triangles around it
+//     passes a vertex exactly, where all signs are rounding, hits one of the triangles around it
 //     p = (w_a a + w_b b + w_c c) / (w_a + w_b + w_c)      weights of the wrong sign count as 0, so
 //                                                          p is on the triangle in any case
 //     t = p.d / d.d                                        and p must lie close to the ray
@@ -20,79 +20,63 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 // after highway.h
+#include "common/trace/kernels/walk-inl.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace mdk {
 namespace HWY_NAMESPACE {
-namespace hn = hwy::HWY_NAMESPACE;
+namespace rays {
 
-using FloatTag = hn::CappedTag<float, kBvhWidth>;
 using DoubleTag = hn::CappedTag<double, kBvhWidth>;
 using DoubleVec = hn::Vec<DoubleTag>;
-
-/// One point per lane. Not `Points`: the tile kernels have another type of that name in this
-/// namespace.
-struct DoublePoints {
-  DoubleVec x, y, z;
-};
-
-HWY_INLINE DoublePoints subtract(const DoublePoints& a, const DoublePoints& b) {
-  return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)};
-}
-HWY_INLINE DoublePoints add(const DoublePoints& a, const DoublePoints& b) {
-  return {hn::Add(a.x, b.x), hn::Add(a.y, b.y), hn::Add(a.z, b.z)};
-}
-HWY_INLINE DoublePoints scale(const DoublePoints& a, DoubleVec s) {
-  return {hn::Mul(a.x, s), hn::Mul(a.y, s), hn::Mul(a.z, s)};
-}
-HWY_INLINE DoubleVec dot_product(const DoublePoints& a, const DoublePoints& b) {
-  return hn::Add(hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)), hn::Mul(a.z, b.z));
-}
-HWY_INLINE DoubleVec sum_of_sizes(const DoublePoints& a) {
-  return hn::Add(hn::Add(hn::Abs(a.x), hn::Abs(a.y)), hn::Abs(a.z));
-}
+using DoublePoints = Points<DoubleTag>;
 
 struct Weight {
   DoubleVec value;
   DoubleVec error;  ///< no less than what rounding may have done to the value
 };
 
-/// Where a ray is inside the slabs of as many boxes as a vector has lanes.
-template <class Tag>
-struct Slabs {
-  hn::Vec<Tag> near, far;
-
-  Slabs(Tag d, float t_max) : near(hn::Zero(d)), far(hn::Set(d, t_max)) {}
-  HWY_INLINE void cut(Tag d, const BoxRay& ray, std::size_t axis, hn::Vec<Tag> low_side,
-                      hn::Vec<Tag> high_side) {
-    const auto inverse = hn::Set(d, ray.inverse[axis]);
-    const auto low = hn::Mul(hn::Sub(low_side, hn::Set(d, ray.origin_for_low[axis])), inverse);
-    const auto high = hn::Mul(hn::Sub(high_side, hn::Set(d, ray.origin_for_high[axis])), inverse);
-    near = hn::Max(near, hn::Min(low, high));
-    far = hn::Min(far, hn::Max(low, high));
-  }
-  HWY_INLINE std::uint32_t met(Tag d) const {
-    alignas(8) std::uint8_t bits[8] = {};
-    hn::StoreMaskBits(d, hn::Le(near, far), bits);
-    return bits[0] | std::uint32_t{bits[1]} << 8;
-  }
-};
-
 /// ((b - a) x (b + a)) . d; `rounding` is kRounding times the largest component of d.
 HWY_INLINE Weight edge_weight(const DoublePoints& a, const DoublePoints& b, const DoublePoints& d,
                               DoubleVec rounding) {
-  const DoublePoints u = subtract(b, a), v = add(b, a);
-  const DoublePoints n{hn::Sub(hn::Mul(u.y, v.z), hn::Mul(u.z, v.y)),
-                       hn::Sub(hn::Mul(u.z, v.x), hn::Mul(u.x, v.z)),
-                       hn::Sub(hn::Mul(u.x, v.y), hn::Mul(u.y, v.x))};
-  return {dot_product(n, d), hn::Mul(hn::Mul(sum_of_sizes(u), sum_of_sizes(v)), rounding)};
+  const DoublePoints u = b - a, v = b + a;
+  return {dot(cross(u, v), d), hn::Mul(hn::Mul(sum_of_sizes(u), sum_of_sizes(v)), rounding)};
 }
 
 /// About twenty roundings of 2^-53 each, relative to the sizes of all factors.
 constexpr double kRounding = 0x1p-48;
 
-class RayWalk {
+/// A ray on its way down one tree (walk-inl.h).
+class RayInTree {
  public:
-  RayWalk(const WorldRay& ray, const VertexSource& vertices, RayHit& hit)
+  RayInTree(const BoxRay& ray, RayAim aim, const RayHit& hit) : ray_(ray), aim_(aim), hit_(hit) {}
+
+  HWY_INLINE std::uint32_t enter(const WideBvhNode& node, float (&order)[kBvhWidth]) const {
+    const hn::CappedTag<float, kBvhWidth> d;
+    std::uint32_t entered = 0;
+    for (std::size_t first = 0; first < kBvhWidth; first += hn::Lanes(d)) {
+      Slabs slabs(d, ray_.t_begin, hit_.t);
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        slabs.cut(d, ray_, axis, hn::Load(d, node.bounds[2 * axis] + first),
+                  hn::Load(d, node.bounds[2 * axis + 1] + first));
+      hn::Store(slabs.near, d, order + first);
+      entered |= slabs.entered(d) << first;
+    }
+    return entered & ((1u << node.count) - 1);
+  }
+  bool is_past(float order) const { return order > hit_.t; }
+  bool finished() const { return aim_ == RayAim::kAny && hit_.triangle != kNoHit; }
+
+ private:
+  const BoxRay& ray_;
+  RayAim aim_;
+  const RayHit& hit_;
+};
+
+/// One ray against blocks of triangles.
+class RayTester {
+ public:
+  RayTester(const WorldRay& ray, const VertexSource& vertices, RayHit& hit)
       : ray_(ray),
         vertices_(vertices),
         hit_(hit),
@@ -100,60 +84,12 @@ class RayWalk {
         rounding_(kRounding * std::max({std::abs(ray.direction.x), std::abs(ray.direction.y),
                                         std::abs(ray.direction.z)})) {}
 
-  void walk(std::span<const WideBvhNode> nodes, const TriangleBlock* blocks, const BoxRay& local,
-            RayAim aim) {
-    if (nodes.empty()) return;
-    std::size_t size = 0;
-    stack_[size++] = {WideBvhChild::inner(0), 0};
-    while (size > 0) {
-      const Entry entry = stack_[--size];
-      if (entry.enter > hit_.t) continue;
-      if (!entry.child.is_leaf()) {
-        size = push_children(nodes[entry.child.index()], local, size);
-        continue;
-      }
-      test_block(blocks[entry.child.index()]);
-      if (aim == RayAim::kAny && hit_.triangle != kNoItem) return;
-    }
-  }
-
-  void test_block(const TriangleBlock& block) {
+  void test(const TriangleBlock& block) {
     const std::size_t lanes = hn::Lanes(DoubleTag());
     for (std::size_t first = 0; first < block.count; first += lanes) test_lanes(block, first);
   }
 
  private:
-  struct Entry {
-    WideBvhChild child;
-    float enter;
-  };
-  static constexpr std::size_t kStackSize = (kBvhWidth - 1) * (kMaxBvhDepth + 1) + 1;
-
-  /// Puts the children that the ray meets on the stack, the nearest on top.
-  HWY_INLINE std::size_t push_children(const WideBvhNode& node, const BoxRay& local,
-                                       std::size_t size) {
-    const FloatTag d;
-    alignas(64) float enter[kBvhWidth];
-    std::uint32_t met = 0;
-    for (std::size_t first = 0; first < kBvhWidth; first += hn::Lanes(d)) {
-      Slabs<FloatTag> slabs(d, hit_.t);
-      for (std::size_t axis = 0; axis < 3; ++axis)
-        slabs.cut(d, local, axis, hn::Load(d, node.bounds[2 * axis] + first),
-                  hn::Load(d, node.bounds[2 * axis + 1] + first));
-      hn::Store(slabs.near, d, enter + first);
-      met |= slabs.met(d) << first;
-    }
-    const std::size_t bottom = size;
-    for (met &= (1u << node.count) - 1; met != 0; met &= met - 1) {
-      const auto c = static_cast<std::size_t>(__builtin_ctz(met));
-      std::size_t place = size++;
-      for (; place > bottom && stack_[place - 1].enter < enter[c]; --place)
-        stack_[place] = stack_[place - 1];
-      stack_[place] = {node.child[c], enter[c]};
-    }
-    return size;
-  }
-
   HWY_INLINE DoublePoints corner(const std::uint32_t* index) const {
     const DoubleTag d;
     alignas(64) double x[kBvhWidth], y[kBvhWidth], z[kBvhWidth];
@@ -170,8 +106,7 @@ class RayWalk {
     const DoubleTag d;
     const DoublePoints a = corner(block.corner[0] + first), b = corner(block.corner[1] + first),
                        c = corner(block.corner[2] + first);
-    const DoublePoints direction{hn::Set(d, ray_.direction.x), hn::Set(d, ray_.direction.y),
-                                 hn::Set(d, ray_.direction.z)};
+    const DoublePoints direction = broadcast(d, ray_.direction);
     const auto rounding = hn::Set(d, rounding_);
     const Weight wa = edge_weight(b, c, direction, rounding),
                  wb = edge_weight(c, a, direction, rounding),
@@ -188,25 +123,22 @@ class RayWalk {
     const auto sa = share_of(wa), sb = share_of(wb), sc = share_of(wc);
     const auto total = hn::Add(hn::Add(sa, sb), sc);
     const auto share = hn::Div(hn::Set(d, 1.0), total);
-    const DoublePoints p = scale(add(add(scale(a, sa), scale(b, sb)), scale(c, sc)), share);
-    const auto t = hn::Div(dot_product(p, direction), hn::Set(d, direction_square_));
-    const DoublePoints off = subtract(p, scale(direction, t));
-    const auto close =
-        hn::Le(dot_product(off, off), hn::Mul(dot_product(p, p), hn::Set(d, 0x1p-40)));
+    const DoublePoints p = scaled(scaled(a, sa) + scaled(b, sb) + scaled(c, sc), share);
+    const auto t = hn::Div(dot(p, direction), hn::Set(d, direction_square_));
+    const DoublePoints off = p - scaled(direction, t);
+    const auto close = hn::Le(dot(off, off), hn::Mul(dot(p, p), hn::Set(d, 0x1p-40)));
     // Written so that a corner that is not a number fails it.
     const auto hit = hn::And(inside, hn::And(close, hn::Gt(total, zero)));
-    alignas(8) std::uint8_t bits[8] = {};
-    hn::StoreMaskBits(d, hit, bits);
-    std::uint32_t met = bits[0];
-    if (first + hn::Lanes(d) > block.count) met &= (1u << (block.count - first)) - 1;
-    if (met == 0) return;
+    std::uint32_t lanes = mask_bits(d, hit);
+    if (first + hn::Lanes(d) > block.count) lanes &= (1u << (block.count - first)) - 1;
+    if (lanes == 0) return;
 
     alignas(64) double depth[kBvhWidth], bary1[kBvhWidth], bary2[kBvhWidth];
     hn::Store(t, d, depth);
     hn::Store(hn::Mul(sb, share), d, bary1);
     hn::Store(hn::Mul(sc, share), d, bary2);
-    for (; met != 0; met &= met - 1) {
-      const auto i = static_cast<std::size_t>(__builtin_ctz(met));
+    for (; lanes != 0; lanes &= lanes - 1) {
+      const auto i = static_cast<std::size_t>(__builtin_ctz(lanes));
       const auto at = static_cast<float>(depth[i]);
       const std::uint32_t triangle = block.triangle[first + i];
       const bool is_closer = at < hit_.t || (at == hit_.t && triangle < hit_.triangle);
@@ -219,10 +151,10 @@ class RayWalk {
   const VertexSource& vertices_;
   RayHit& hit_;
   double direction_square_, rounding_;
-  Entry stack_[kStackSize];
 };
 
-std::size_t Meet(const BoxRay& ray, const MovingBoxes& boxes, float t_max, MetBox* met) {
+std::size_t EnterBoxes(const BoxRay& ray, const MovingBoxes& boxes, float t_max,
+                       EnteredBox* entered) {
   const hn::CappedTag<float, kMovingBoxLanes> d;
   const auto s = hn::Set(d, boxes.s);
   const auto row_at = [&](std::size_t row, std::size_t first) {
@@ -233,34 +165,37 @@ std::size_t Meet(const BoxRay& ray, const MovingBoxes& boxes, float t_max, MetBo
   alignas(64) float enter[kMovingBoxLanes];
   std::size_t count = 0;
   for (std::size_t first = 0; first < boxes.count; first += hn::Lanes(d)) {
-    Slabs<decltype(d)> slabs(d, t_max);
+    Slabs slabs(d, ray.t_begin, t_max);
     for (std::size_t axis = 0; axis < 3; ++axis)
       slabs.cut(d, ray, axis, row_at(2 * axis, first), row_at(2 * axis + 1, first));
-    std::uint32_t lanes = slabs.met(d);
+    std::uint32_t lanes = slabs.entered(d);
     if (boxes.count - first < hn::Lanes(d)) lanes &= (1u << (boxes.count - first)) - 1;
     if (lanes == 0) continue;
     hn::Store(slabs.near, d, enter);
     for (; lanes != 0; lanes &= lanes - 1) {
       const auto lane = static_cast<std::uint32_t>(__builtin_ctz(lanes));
       std::size_t place = count++;
-      for (; place > 0 && met[place - 1].enter > enter[lane]; --place) met[place] = met[place - 1];
-      met[place] = {static_cast<std::uint32_t>(first) + lane, enter[lane]};
+      for (; place > 0 && entered[place - 1].enter > enter[lane]; --place)
+        entered[place] = entered[place - 1];
+      entered[place] = {static_cast<std::uint32_t>(first) + lane, enter[lane]};
     }
   }
   return count;
 }
 
-void Cluster(const WorldRay& ray, const BoxRay& local, const ClusterQuery& cluster, RayAim aim,
-             RayHit& hit) {
-  RayWalk(ray, cluster.vertices, hit).walk(cluster.nodes, cluster.blocks, local, aim);
+void Intersect(const WorldRay& ray, const BoxRay& local, const RayTarget& target, RayAim aim,
+               RayHit& hit) {
+  RayTester tester(ray, target.vertices, hit);
+  if (target.nodes.empty()) {
+    for (const TriangleBlock& block : target.blocks) tester.test(block);
+    return;
+  }
+  const RayInTree rays(local, aim, hit);
+  walk_bvh(target.nodes, rays, [&](std::uint32_t leaf) { tester.test(target.blocks[leaf]); });
 }
 
-void Blocks(const WorldRay& ray, std::span<const TriangleBlock> blocks,
-            const VertexSource& vertices, RayHit& hit) {
-  RayWalk walk(ray, vertices, hit);
-  for (const TriangleBlock& block : blocks) walk.test_block(block);
-}
-
+}  // namespace rays
+using rays::EnterBoxes, rays::Intersect;
 }  // namespace HWY_NAMESPACE
 }  // namespace mdk
 HWY_AFTER_NAMESPACE();
@@ -268,20 +203,20 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace mdk {
 
-HWY_EXPORT(Meet);
-HWY_EXPORT(Cluster);
-HWY_EXPORT(Blocks);
+HWY_EXPORT(EnterBoxes);
+HWY_EXPORT(Intersect);
 
-BoxRay make_box_ray(const Vec3d& origin, const Vec3d& direction, const Affine3d& local_from_world,
-                    const Aabb& bounds, double world_slack) {
-  const Vec3d local_origin = local_from_world.point(origin);
-  const Vec3d local_direction = local_from_world.vector(direction);
+BoxRay make_box_ray(const WorldRay& world, const Affine3d& local_from_world, const Aabb& bounds,
+                    double world_slack) {
+  const Vec3d local_origin = local_from_world.point(world.origin);
+  const Vec3d local_direction = local_from_world.vector(world.direction);
   const double longest = std::max(
       {std::abs(local_direction.x), std::abs(local_direction.y), std::abs(local_direction.z)});
   // A component so small moves the ray by less than the slack on its way to anything; kept from
   // zero, its inverse is finite and no product is without a value.
-  const double least = std::max(longest * 0x1p-40, 1e-30);
+  const double shortest = std::max(longest * 0x1p-40, 1e-30);
   BoxRay ray;
+  ray.t_begin = std::min(0.0f, world.t_min);
   for (std::size_t k = 0; k < 3; ++k) {
     const double* row = local_from_world.m[k];
     const double stretch = std::abs(row[0]) + std::abs(row[1]) + std::abs(row[2]);
@@ -293,23 +228,19 @@ BoxRay make_box_ray(const Vec3d& origin, const Vec3d& direction, const Affine3d&
     ray.origin_for_high[k] = static_cast<float>(local_origin[k] - slack);
     const double component = local_direction[k];
     ray.inverse[k] = static_cast<float>(
-        1 / (std::abs(component) < least ? std::copysign(least, component) : component));
+        1 / (std::abs(component) < shortest ? std::copysign(shortest, component) : component));
   }
   return ray;
 }
 
-std::size_t meet_boxes(const BoxRay& ray, const MovingBoxes& boxes, float t_max, MetBox* met) {
-  return HWY_DYNAMIC_DISPATCH(Meet)(ray, boxes, t_max, met);
+std::size_t enter_boxes(const BoxRay& ray, const MovingBoxes& boxes, float t_max,
+                        EnteredBox* entered) {
+  return HWY_DYNAMIC_DISPATCH(EnterBoxes)(ray, boxes, t_max, entered);
 }
 
-void intersect_cluster(const WorldRay& ray, const BoxRay& local, const ClusterQuery& cluster,
-                       RayAim aim, RayHit& hit) {
-  HWY_DYNAMIC_DISPATCH(Cluster)(ray, local, cluster, aim, hit);
-}
-
-void intersect_blocks(const WorldRay& ray, std::span<const TriangleBlock> blocks,
-                      const VertexSource& vertices, RayHit& hit) {
-  HWY_DYNAMIC_DISPATCH(Blocks)(ray, blocks, vertices, hit);
+void intersect(const WorldRay& ray, const BoxRay& local, const RayTarget& target, RayAim aim,
+               RayHit& hit) {
+  HWY_DYNAMIC_DISPATCH(Intersect)(ray, local, target, aim, hit);
 }
 
 }  // namespace mdk

@@ -13,66 +13,35 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 // after highway.h
+#include "common/simd/lanes-inl.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace mdk {
 namespace HWY_NAMESPACE {
-namespace hn = hwy::HWY_NAMESPACE;
+namespace surfaces {
 
-using FloatTag = hn::CappedTag<float, kTileSide>;
-using FloatVec = hn::Vec<FloatTag>;
+static_assert(hn::MaxLanes(FloatTag()) <= kTileSide);
 
 template <class D>
 using IndexVec = hn::Vec<hn::RebindToSigned<D>>;
 
-/// x, y, z of one vector per lane.
 template <class D>
-struct Vectors {
-  hn::Vec<D> x, y, z;
-};
-
-template <class D>
-HWY_INLINE Vectors<D> broadcast(D d, const Vec3f& v) {
-  return {hn::Set(d, v.x), hn::Set(d, v.y), hn::Set(d, v.z)};
-}
-template <class D>
-HWY_INLINE Vectors<D> scaled(const Vectors<D>& v, hn::Vec<D> s) {
-  return {hn::Mul(v.x, s), hn::Mul(v.y, s), hn::Mul(v.z, s)};
-}
-template <class D>
-HWY_INLINE Vectors<D> sum(const Vectors<D>& a, const Vectors<D>& b) {
-  return {hn::Add(a.x, b.x), hn::Add(a.y, b.y), hn::Add(a.z, b.z)};
-}
-template <class D>
-HWY_INLINE Vectors<D> difference(const Vectors<D>& a, const Vectors<D>& b) {
-  return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)};
-}
-template <class D>
-HWY_INLINE hn::Vec<D> dot_product(const Vectors<D>& a, const Vectors<D>& b) {
-  return hn::Add(hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)), hn::Mul(a.z, b.z));
-}
-template <class D>
-HWY_INLINE Vectors<D> cross_product(const Vectors<D>& a, const Vectors<D>& b) {
-  return {hn::Sub(hn::Mul(a.y, b.z), hn::Mul(a.z, b.y)),
-          hn::Sub(hn::Mul(a.z, b.x), hn::Mul(a.x, b.z)),
-          hn::Sub(hn::Mul(a.x, b.y), hn::Mul(a.y, b.x))};
-}
-template <class D>
-HWY_INLINE Vectors<D> choose(hn::Mask<D> mask, const Vectors<D>& yes, const Vectors<D>& no) {
+HWY_INLINE Points<D> choose(hn::Mask<D> mask, const Points<D>& yes, const Points<D>& no) {
   return {hn::IfThenElse(mask, yes.x, no.x), hn::IfThenElse(mask, yes.y, no.y),
           hn::IfThenElse(mask, yes.z, no.z)};
 }
 /// `v` where not `keep`, else with the sign turned.
 template <class D>
-HWY_INLINE Vectors<D> negated_unless(D d, hn::Mask<D> keep, const Vectors<D>& v) {
+HWY_INLINE Points<D> negated_unless(D d, hn::Mask<D> keep, const Points<D>& v) {
   const auto zero = hn::Zero(d);
-  return choose<D>(keep, v, {hn::Sub(zero, v.x), hn::Sub(zero, v.y), hn::Sub(zero, v.z)});
+  return choose(keep, v, {hn::Sub(zero, v.x), hn::Sub(zero, v.y), hn::Sub(zero, v.z)});
 }
 /// (0, 0, 1) where there is no direction.
 template <class D>
-HWY_INLINE Vectors<D> unit(D d, const Vectors<D>& v) {
-  const auto length = hn::Sqrt(dot_product<D>(v, v));
-  return choose<D>(hn::Gt(length, hn::Zero(d)), scaled<D>(v, hn::Div(hn::Set(d, 1.0f), length)),
-                   broadcast(d, {0, 0, 1}));
+HWY_INLINE Points<D> unit(D d, const Points<D>& v) {
+  const auto length = hn::Sqrt(dot(v, v));
+  return choose(hn::Gt(length, hn::Zero(d)), scaled(v, hn::Div(hn::Set(d, 1.0f), length)),
+                broadcast(d, {0, 0, 1}));
 }
 
 /// One point per lane, put in whole and taken out as vectors of x, y and z: sooner done than
@@ -88,7 +57,7 @@ class Rows {
       hn::Store(hn::Load(d4, &point.x + k), d4, place + k);
   }
 
-  HWY_INLINE Vectors<D> columns() const {
+  HWY_INLINE Points<D> columns() const {
     const D d;
     if constexpr (kStep == 1) {
       return {hn::Load(d, rows_), hn::Load(d, rows_ + 1), hn::Load(d, rows_ + 2)};
@@ -119,10 +88,10 @@ class Rows {
 /// Triangles turned towards the eye, one a lane.
 template <class D>
 struct Facets {
-  Vectors<D> edge[3];    ///< across from the corners: edge . ray is the corner's weight
-  Vectors<D> normal[3];  ///< at the corners
-  Vectors<D> color[3];   ///< at the corners; without corner colours only the first
-  Vectors<D> face;       ///< their own normal, of any length
+  Points<D> edge[3];    ///< across from the corners: edge . ray is the corner's weight
+  Points<D> normal[3];  ///< at the corners
+  Points<D> color[3];   ///< at the corners; without corner colours only the first
+  Points<D> face;       ///< their own normal, of any length
 };
 
 /// One triangle as it is kept, so that its other pixels find it: the members of Facets in order.
@@ -138,23 +107,22 @@ class FacetMaker {
   template <class D>
   HWY_INLINE Facets<D> make(D d, const std::uint32_t* triangles) const {
     Facets<D> out;
-    Vectors<D> p[3], n[3];
+    Points<D> p[3], n[3];
     fetch_corners(d, triangles, p, n);
-    for (Vectors<D>& corner : p) corner = difference<D>(corner, broadcast(d, rays_.origin));
-    out.face = cross_product<D>(difference<D>(p[1], p[0]), difference<D>(p[2], p[0]));
-    const auto is_front = hn::Lt(dot_product<D>(out.face, p[0]), hn::Zero(d));
+    for (Points<D>& corner : p) corner = corner - broadcast(d, rays_.origin);
+    out.face = cross(p[1] - p[0], p[2] - p[0]);
+    const auto is_front = hn::Lt(dot(out.face, p[0]), hn::Zero(d));
     out.face = negated_unless(d, is_front, out.face);
     const auto is_flat = fetch_flat(d, triangles);
     for (int k = 0; k < 3; ++k) {
-      const Vectors<D>&a = p[(k + 1) % 3], &b = p[(k + 2) % 3];
-      out.edge[k] =
-          negated_unless(d, is_front, cross_product<D>(difference<D>(b, a), sum<D>(b, a)));
+      const Points<D>&a = p[(k + 1) % 3], &b = p[(k + 2) % 3];
+      out.edge[k] = negated_unless(d, is_front, edge_form(a, b));
       const auto zero = hn::Zero(d);
       const auto none =
           hn::And(hn::Eq(n[k].x, zero), hn::And(hn::Eq(n[k].y, zero), hn::Eq(n[k].z, zero)));
       const auto own = hn::Or(is_flat, none);
       out.normal[k] = negated_unless(d, is_front, n[k]);
-      if (!hn::AllFalse(d, own)) out.normal[k] = choose<D>(own, unit(d, out.face), out.normal[k]);
+      if (!hn::AllFalse(d, own)) out.normal[k] = choose(own, unit(d, out.face), out.normal[k]);
     }
     fetch_colors(d, triangles, out);
     return out;
@@ -162,8 +130,8 @@ class FacetMaker {
 
  private:
   template <class D>
-  HWY_INLINE void fetch_corners(D d, const std::uint32_t* triangles, Vectors<D> (&p)[3],
-                                Vectors<D> (&n)[3]) const {
+  HWY_INLINE void fetch_corners(D d, const std::uint32_t* triangles, Points<D> (&p)[3],
+                                Points<D> (&n)[3]) const {
     Rows<D> position[3], normal[3];
     for (std::size_t i = 0; i < hn::Lanes(d); ++i)
       for (std::size_t k = 0; k < 3; ++k) {
@@ -195,7 +163,7 @@ class FacetMaker {
       green[i] = base.y;
       blue[i] = base.z;
     }
-    const Vectors<D> base{hn::Load(d, red), hn::Load(d, green), hn::Load(d, blue)};
+    const Points<D> base{hn::Load(d, red), hn::Load(d, green), hn::Load(d, blue)};
     out.color[0] = base;
     if (mesh_.corner_colors == nullptr) return;
     for (std::size_t i = 0; i < hn::Lanes(d); ++i)
@@ -220,8 +188,8 @@ class FacetMaker {
 class TileSurface {
  public:
   TileSurface(const PinholeRays& rays, std::uint32_t x, std::uint32_t y, const ShadedMesh& mesh,
-              const SurfaceWishes& wishes)
-      : rays_(rays), x_(x), y_(y), maker_(rays, mesh), wishes_(wishes) {
+              const SurfaceOptions& options)
+      : rays_(rays), x_(x), y_(y), maker_(rays, mesh), options_(options) {
     has_colors_ = mesh.corner_colors != nullptr;
   }
 
@@ -296,7 +264,7 @@ class TileSurface {
   void keep(std::uint32_t triangle, KeptFacet& kept) const {
     using One = hn::CappedTag<float, 1>;
     const auto facet = maker_.make(One(), &triangle);
-    const auto lane = [](const Vectors<One>& v) {
+    const auto lane = [](const Points<One>& v) {
       return Vec3f{hn::GetLane(v.x), hn::GetLane(v.y), hn::GetLane(v.z)};
     };
     for (int k = 0; k < 3; ++k) {
@@ -317,7 +285,7 @@ class TileSurface {
       const FloatTag d;
       hn::Store(hn::IfThenElse(mine_, value, hn::Load(d, array + at_)), d, array + at_);
     }
-    HWY_INLINE void put(const Vectors<FloatTag>& value, float* x, float* y, float* z) const {
+    HWY_INLINE void put(const Points<FloatTag>& value, float* x, float* y, float* z) const {
       put(value.x, x);
       put(value.y, y);
       put(value.z, z);
@@ -330,75 +298,72 @@ class TileSurface {
 
   HWY_INLINE void shade(const Facets<FloatTag>& facet, std::uint32_t row, std::uint32_t column,
                         hn::Mask<FloatTag> mine, SurfaceTile& out) const {
-    using V = FloatTag;
     const FloatTag d;
     const Place place(row, column, mine);
     const auto x = hn::Add(hn::Iota(d, static_cast<float>(x_ + column)), hn::Set(d, 0.5f));
     const Vec3f base = rays_.corner + rays_.dv * (static_cast<float>(y_ + row) + 0.5f);
-    const Vectors<V> ray = sum<V>(scaled<V>(broadcast(d, rays_.du), x), broadcast(d, base));
+    const Points<FloatTag> ray = scaled(broadcast(d, rays_.du), x) + broadcast(d, base);
     FloatVec w[3];
-    for (int k = 0; k < 3; ++k) w[k] = hn::Max(dot_product<V>(facet.edge[k], ray), hn::Zero(d));
+    for (int k = 0; k < 3; ++k) w[k] = hn::Max(dot(facet.edge[k], ray), hn::Zero(d));
 
     face_the_eye(facet, ray, w, place, out);
-    if (has_colors_ || wishes_.barycentrics) {
+    if (has_colors_ || options_.barycentrics) {
       const auto total = hn::Add(hn::Add(w[0], w[1]), w[2]);
       const auto share =
           hn::IfThenElse(hn::Gt(total, hn::Zero(d)), hn::Div(hn::Set(d, 1.0f), total), hn::Zero(d));
       for (FloatVec& weight : w) weight = hn::Mul(weight, share);
     }
-    if (wishes_.barycentrics) {
+    if (options_.barycentrics) {
       place.put(w[1], out.bary1);
       place.put(w[2], out.bary2);
     }
     place.put(has_colors_ ? blend(facet.color, w) : facet.color[0], out.red, out.green, out.blue);
   }
 
-  static HWY_INLINE Vectors<FloatTag> blend(const Vectors<FloatTag> (&corner)[3],
-                                            const FloatVec (&w)[3]) {
-    using V = FloatTag;
-    return sum<V>(sum<V>(scaled<V>(corner[0], w[0]), scaled<V>(corner[1], w[1])),
-                  scaled<V>(corner[2], w[2]));
+  static HWY_INLINE Points<FloatTag> blend(const Points<FloatTag> (&corner)[3],
+                                           const FloatVec (&w)[3]) {
+    return scaled(corner[0], w[0]) + scaled(corner[1], w[1]) + scaled(corner[2], w[2]);
   }
 
   /// The blend of the corners' normals, on the side of the triangle that is seen.
-  HWY_INLINE void face_the_eye(const Facets<FloatTag>& facet, const Vectors<FloatTag>& ray,
+  HWY_INLINE void face_the_eye(const Facets<FloatTag>& facet, const Points<FloatTag>& ray,
                                const FloatVec (&w)[3], const Place& place, SurfaceTile& out) const {
-    using V = FloatTag;
     const FloatTag d;
     const auto zero = hn::Zero(d), one = hn::Set(d, 1.0f);
-    Vectors<V> n = blend(facet.normal, w);
-    auto square = dot_product<V>(n, n);
+    Points<FloatTag> n = blend(facet.normal, w);
+    auto square = dot(n, n);
     const auto usable = hn::Gt(square, zero);
     if (!hn::AllTrue(d, usable)) {
-      n = choose<V>(usable, n, unit(d, facet.face));
+      n = choose(usable, n, unit(d, facet.face));
       square = hn::IfThenElse(usable, square, one);
     }
-    const auto side = dot_product<V>(n, facet.face);
-    if (wishes_.facing) {
-      const auto along = hn::Mul(dot_product<V>(n, ray), hn::CopySign(one, side));
-      const auto cosine =
-          hn::Div(hn::Neg(along), hn::Sqrt(hn::Mul(square, dot_product<V>(ray, ray))));
+    const auto side = dot(n, facet.face);
+    if (options_.facing) {
+      const auto along = hn::Mul(dot(n, ray), hn::CopySign(one, side));
+      const auto cosine = hn::Div(hn::Neg(along), hn::Sqrt(hn::Mul(square, dot(ray, ray))));
       place.put(hn::Min(hn::Max(cosine, zero), one), out.facing);
     }
-    if (wishes_.normals) {
+    if (options_.normals) {
       const auto size = hn::Div(one, hn::Sqrt(square));
-      place.put(scaled<V>(n, hn::CopySign(size, side)), out.normal_x, out.normal_y, out.normal_z);
+      place.put(scaled(n, hn::CopySign(size, side)), out.normal_x, out.normal_y, out.normal_z);
     }
   }
 
   const PinholeRays& rays_;
   std::uint32_t x_, y_;
   FacetMaker maker_;
-  SurfaceWishes wishes_;
+  SurfaceOptions options_;
   bool has_colors_;
   KeptFacet kept_[kKept];
 };
 
 void Surface(const PinholeRays& rays, std::uint32_t x, std::uint32_t y, const ShadedMesh& mesh,
-             const TileHits& hits, const SurfaceWishes& wishes, SurfaceTile& surface) {
-  TileSurface(rays, x, y, mesh, wishes).run(hits, surface);
+             const TileHits& hits, const SurfaceOptions& options, SurfaceTile& surface) {
+  TileSurface(rays, x, y, mesh, options).run(hits, surface);
 }
 
+}  // namespace surfaces
+using surfaces::Surface;
 }  // namespace HWY_NAMESPACE
 }  // namespace mdk
 HWY_AFTER_NAMESPACE();
@@ -409,9 +374,9 @@ namespace mdk {
 HWY_EXPORT(Surface);
 
 void compute_surface(const PinholeRays& rays, std::uint32_t x, std::uint32_t y,
-                     const ShadedMesh& mesh, const TileHits& hits, const SurfaceWishes& wishes,
+                     const ShadedMesh& mesh, const TileHits& hits, const SurfaceOptions& options,
                      SurfaceTile& surface) {
-  HWY_DYNAMIC_DISPATCH(Surface)(rays, x, y, mesh, hits, wishes, surface);
+  HWY_DYNAMIC_DISPATCH(Surface)(rays, x, y, mesh, hits, options, surface);
 }
 
 }  // namespace mdk

@@ -10,9 +10,9 @@
 
 namespace mdk {
 
-/// A corner of triangles that are seen; what shading wants of it lies together.
+/// A corner of triangles that are seen; what shading needs of it lies together.
 struct alignas(32) SurfaceVertex {
-  Vec3f position;  ///< in the present pose
+  Vec3f position;  ///< in the current pose
   float unused0 = 0;
   Vec3f normal;  ///< unit, or zero where there is none
   float unused1 = 0;
@@ -30,13 +30,14 @@ struct ShadedMesh {
   const std::uint32_t* corner_colors;  ///< 3 per triangle, linear RGBA bytes, red lowest; or null
 };
 
-/// What is wanted of a surface besides its colour.
-struct SurfaceWishes {
+/// What is computed of a surface besides its colour.
+struct SurfaceOptions {
   bool facing = true, normals = false, barycentrics = false;
 };
+using SurfaceWishes = SurfaceOptions;  // moved; until its users say so themselves
 
 /// One value per pixel of a tile, at j * kTileSide + i; without meaning where nothing was hit or it
-/// was not wished for.
+/// was not asked for.
 struct alignas(64) SurfaceTile {
   float normal_x[kTilePixels], normal_y[kTilePixels], normal_z[kTilePixels];  ///< unit, to the eye
   float facing[kTilePixels];  ///< cosine between normal and the way to the eye, in [0, 1]
@@ -47,7 +48,7 @@ struct alignas(64) SurfaceTile {
 /// The upper left pixel of `hits`, which holds a hit, is (x, y) of the image. The same to the bit
 /// on every machine.
 void compute_surface(const PinholeRays& rays, std::uint32_t x, std::uint32_t y,
-                     const ShadedMesh& mesh, const TileHits& hits, const SurfaceWishes& wishes,
+                     const ShadedMesh& mesh, const TileHits& hits, const SurfaceOptions& options,
                      SurfaceTile& surface);
 
 }  // namespace mdk

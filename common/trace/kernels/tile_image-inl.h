@@ -1,4 +1,4 @@
-// The picture of one tile while it is traced: nearness (1/depth) and triangle of every pixel, and
+// The picture of one tile while it is traced: inverse depth and triangle of every pixel, and
 // the one triangle test of the project: every technique, brute force included, ends here, so every
 // technique finds the same hits to the bit.
 //
@@ -7,15 +7,15 @@
 //
 //       +----+----+----+----+
 //       | 0  | 1  | 2  | 3  |   square s holds pixels s*16 .. s*16+15, row by row;
-//       +----+----+----+----+   far_[s] is the least nearness in it: what is farther
+//       +----+----+----+----+   far_[s] is the smallest inverse depth in it: what is farther
 //       | 4  | 5  | ...         is hidden there.
 //
 // A pixel is hit where the three edge forms have one sign (zero counts as both: shared edges leave
-// no gap), within the triangle's pixel bounds; its nearness is clamped to that of the corners. For
-// triangles of sane shape bounds and clamp change nothing; for slivers, whose forms are all
-// rounding, they keep the hit inside what any box around the triangle shows, which is what makes
-// structures exact. Multiplications and additions are rounded apart (no fused ones): the same hits
-// on every machine.
+// no gap), within the triangle's pixel bounds; its inverse depth is clamped to those of the
+// corners. For triangles of sane shape bounds and clamp change nothing; for slivers, whose forms
+// are all rounding, they keep the hit inside what any box around the triangle shows, which is what
+// makes structures exact. Multiplications and additions are rounded apart (no fused ones): the same
+// hits on every machine.
 #include <limits>
 
 #include "common/trace/kernels/projection-inl.h"
@@ -30,7 +30,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace mdk {
 namespace HWY_NAMESPACE {
-namespace hn = hwy::HWY_NAMESPACE;
+namespace tiles {
 
 inline constexpr std::uint32_t kSquareSide = 4;
 inline constexpr std::uint32_t kSquares = 16;
@@ -47,21 +47,22 @@ class TileImage {
   explicit TileImage(const TileRays& tile)
       : left_(static_cast<float>(tile.x) + 0.5f), top_(static_cast<float>(tile.y) + 0.5f) {}
 
-  /// The least nearness of the tile's hits; 0 while a ray has none.
-  float least_nearness() const { return least_nearness_; }
+  /// The smallest inverse depth of the tile's hits; 0 while a ray has none.
+  float min_inverse_depth() const { return min_inverse_depth_; }
   /// The depth past which nothing matters any more.
   float farthest() const { return farthest_; }
 
   /// Which triangles of a projected block, from lane `i`, may be hit in this tile, by their bounds.
   HWY_INLINE FloatMask may_hit(const ProjectedBlock& block, std::size_t i) const {
     const FloatTag d;
-    const auto meets = [&](const float* first, const float* last, float begin) {
+    const auto overlaps = [&](const float* first, const float* last, float begin) {
       return hn::And(hn::Le(hn::Load(d, first + i), hn::Set(d, begin + (kTileSide - 1))),
                      hn::Ge(hn::Load(d, last + i), hn::Set(d, begin)));
     };
-    const auto in_x = meets(block.first_x, block.last_x, left_);
-    const auto in_y = meets(block.first_y, block.last_y, top_);
-    const auto seen = hn::Ge(hn::Load(d, block.most_nearness + i), hn::Set(d, least_nearness_));
+    const auto in_x = overlaps(block.first_x, block.last_x, left_);
+    const auto in_y = overlaps(block.first_y, block.last_y, top_);
+    const auto seen =
+        hn::Ge(hn::Load(d, block.max_inverse_depth + i), hn::Set(d, min_inverse_depth_));
     return hn::And(hn::And(in_x, in_y), seen);
   }
 
@@ -80,12 +81,12 @@ class TileImage {
     return pairs;
   }
 
-  /// Rows of 16 pixels, depths instead of nearness.
+  /// Rows of 16 pixels, depths instead of their inverses.
   void store(TileHits& hits) const {
     const FloatTag d;
     alignas(64) float t[kTilePixels];
     for (std::size_t i = 0; i < kTilePixels; i += hn::Lanes(d))
-      hn::Store(hn::Div(hn::Set(d, 1.0f), hn::Load(d, nearness_ + i)), d, t + i);
+      hn::Store(hn::Div(hn::Set(d, 1.0f), hn::Load(d, inverse_depth_ + i)), d, t + i);
     const hn::CappedTag<float, kSquareSide> d4;
     const hn::RebindToUnsigned<decltype(d4)> du4;
     for (std::size_t y = 0; y < kTileSide; ++y)
@@ -108,7 +109,7 @@ class TileImage {
     const hn::RebindToUnsigned<FloatTag> du;
     begun_ = true;
     for (std::size_t i = 0; i < kTilePixels; i += hn::Lanes(d)) {
-      hn::Store(hn::Zero(d), d, nearness_ + i);
+      hn::Store(hn::Zero(d), d, inverse_depth_ + i);
       hn::Store(hn::Set(du, kNoHit), du, triangle_ + i);
     }
     for (std::size_t i = 0; i < kSquares; i += hn::Lanes(d)) {
@@ -121,25 +122,25 @@ class TileImage {
     }
   }
 
-  /// Bit s is set unless the bounds or the nearness of triangle `i` keep it out of square s.
-  HWY_INLINE std::uint32_t squares_met(const ProjectedBlock& p, std::size_t i) const {
+  /// Bit s is set unless the bounds or the depth of triangle `i` keep it out of square s.
+  HWY_INLINE std::uint32_t squares_touched(const ProjectedBlock& p, std::size_t i) const {
     const FloatTag d;
     const auto first_x = hn::Set(d, p.first_x[i] - left_ - (kSquareSide - 1));
     const auto last_x = hn::Set(d, p.last_x[i] - left_);
     const auto first_y = hn::Set(d, p.first_y[i] - top_ - (kSquareSide - 1));
     const auto last_y = hn::Set(d, p.last_y[i] - top_);
-    const auto nearness = hn::Set(d, p.most_nearness[i]);
+    const auto inverse_depth = hn::Set(d, p.max_inverse_depth[i]);
     const auto side = hn::Set(d, float{kSquareSide});
-    std::uint32_t met = 0;
+    std::uint32_t touched = 0;
     for (std::size_t s = 0; s < kSquares; s += hn::Lanes(d)) {
       const auto x = hn::Mul(hn::Load(d, kGridColumn + s), side);
       const auto y = hn::Mul(hn::Load(d, kGridRow + s), side);
       const auto in_x = hn::And(hn::Ge(x, first_x), hn::Le(x, last_x));
       const auto in_y = hn::And(hn::Ge(y, first_y), hn::Le(y, last_y));
-      const auto seen = hn::Ge(nearness, hn::Load(d, far_ + s));
-      met |= bits_of(hn::And(hn::And(in_x, in_y), seen)) << s;
+      const auto seen = hn::Ge(inverse_depth, hn::Load(d, far_ + s));
+      touched |= mask_bits(d, hn::And(hn::And(in_x, in_y), seen)) << s;
     }
-    return met;
+    return touched;
   }
 
   /// Bit s is set unless some edge has all pixel centres of square s strictly on its outer side,
@@ -148,7 +149,7 @@ class TileImage {
   HWY_INLINE std::uint32_t squares_inside_edges(const ProjectedBlock& p, std::size_t i) const {
     const FloatTag d;
     const auto side = hn::Set(d, float{kSquareSide}), reach = hn::Set(d, float{kSquareSide - 1});
-    std::uint32_t met = 0;
+    std::uint32_t touched = 0;
     for (std::size_t s = 0; s < kSquares; s += hn::Lanes(d)) {
       const auto x0 = hn::MulAdd(hn::Load(d, kGridColumn + s), side, hn::Set(d, left_));
       const auto y0 = hn::MulAdd(hn::Load(d, kGridRow + s), side, hn::Set(d, top_));
@@ -163,16 +164,16 @@ class TileImage {
         none_below = hn::And(none_below, hn::Ge(high, hn::Zero(d)));
         none_above = hn::And(none_above, hn::Le(low, hn::Zero(d)));
       }
-      met |= bits_of(hn::Or(none_below, none_above)) << s;
+      touched |= mask_bits(d, hn::Or(none_below, none_above)) << s;
     }
-    return met;
+    return touched;
   }
 
   /// One triangle against all squares it may touch.
   std::uint32_t test_large(const TriangleBlock& block, const ProjectedBlock& p, std::size_t i) {
     // Fewer squares are tested sooner than told apart.
     constexpr int kWorthEdges = 6;
-    std::uint32_t squares = squares_met(p, i);
+    std::uint32_t squares = squares_touched(p, i);
     if (__builtin_popcount(squares) >= kWorthEdges) squares &= squares_inside_edges(p, i);
     // Behind the eye, too, rays extended backwards are inside all edges.
     const float above = (p.behind >> i & 1u) != 0 ? 0.0f : -std::numeric_limits<float>::infinity();
@@ -185,12 +186,12 @@ class TileImage {
 
   struct Candidate {
     std::uint32_t triangle;
-    float above;  ///< what a hit's nearness must exceed before it is clamped
+    float above;  ///< what a hit's inverse depth must exceed before it is clamped
   };
 
   HWY_INLINE void test_square(const Candidate& candidate, const ProjectedBlock& p, std::size_t i,
                               std::uint32_t square) {
-    // No branch before the end: whether a square is hit cannot be foretold.
+    // No branch before the end: whether a square is hit cannot be predicted.
     const FloatTag d;
     const hn::RebindToUnsigned<FloatTag> du;
     for (std::size_t k = 0; k < kSquarePixels; k += hn::Lanes(d)) {
@@ -204,20 +205,21 @@ class TileImage {
           hn::And(hn::Ge(x, hn::Set(d, p.first_x[i])), hn::Le(x, hn::Set(d, p.last_x[i])));
       const auto in_y =
           hn::And(hn::Ge(y, hn::Set(d, p.first_y[i])), hn::Le(y, hn::Set(d, p.last_y[i])));
-      const auto free = value(p.nearness);
-      const auto nearness =
-          hn::Max(hn::Min(free, hn::Set(d, p.most_nearness[i])), hn::Set(d, p.least_nearness[i]));
+      const auto free = value(p.inverse_depth);
+      const auto inverse_depth = hn::Max(hn::Min(free, hn::Set(d, p.max_inverse_depth[i])),
+                                         hn::Set(d, p.min_inverse_depth[i]));
 
-      float* best = nearness_ + square * kSquarePixels + k;
+      float* best = inverse_depth_ + square * kSquarePixels + k;
       std::uint32_t* best_id = triangle_ + square * kSquarePixels + k;
       const auto old = hn::Load(d, best);
       const auto old_id = hn::Load(du, best_id);
       const auto new_id = hn::Set(du, candidate.triangle);
-      const auto tie = hn::And(hn::Eq(nearness, old), hn::RebindMask(d, hn::Lt(new_id, old_id)));
-      const auto closer = hn::Or(hn::Gt(nearness, old), tie);
+      const auto tie =
+          hn::And(hn::Eq(inverse_depth, old), hn::RebindMask(d, hn::Lt(new_id, old_id)));
+      const auto closer = hn::Or(hn::Gt(inverse_depth, old), tie);
       const auto hit = hn::And(hn::And(inside, hn::Gt(free, hn::Set(d, candidate.above))),
                                hn::And(closer, hn::And(in_x, in_y)));
-      hn::Store(hn::IfThenElse(hit, nearness, old), d, best);
+      hn::Store(hn::IfThenElse(hit, inverse_depth, old), d, best);
       hn::Store(hn::IfThenElse(hn::RebindMask(du, hit), new_id, old_id), du, best_id);
       changed_ |= static_cast<std::uint32_t>(!hn::AllFalse(d, hit)) << square;
     }
@@ -257,7 +259,7 @@ class TileImage {
         hn::And(hn::Le(x, hn::Load(d, p.last_x + i)), hn::Le(y, hn::Load(d, p.last_y + i)));
     const auto in_tile = hn::And(hn::Ge(hn::Min(from_left, from_top), hn::Zero(d)),
                                  hn::Le(hn::Max(from_left, from_top), last));
-    lanes &= bits_of(hn::And(in_bounds, in_tile));
+    lanes &= mask_bits(d, hn::And(in_bounds, in_tile));
     if (lanes == 0) return 0;
     const auto value = [&](const ImageForms& form) {
       return hn::Add(hn::Mul(hn::Load(d, form.x + i), x),
@@ -265,13 +267,13 @@ class TileImage {
     };
     const auto inside = one_sign(value(p.edge[0]), value(p.edge[1]), value(p.edge[2]));
     const auto pairs = static_cast<std::uint32_t>(__builtin_popcount(lanes));
-    lanes &= bits_of(inside);
+    lanes &= mask_bits(d, inside);
     if (lanes == 0) return pairs;
 
-    alignas(64) float nearness[kBlockTriangles];
-    hn::Store(hn::Max(hn::Min(value(p.nearness), hn::Load(d, p.most_nearness + i)),
-                      hn::Load(d, p.least_nearness + i)),
-              d, nearness);
+    alignas(64) float inverse_depth[kBlockTriangles];
+    hn::Store(hn::Max(hn::Min(value(p.inverse_depth), hn::Load(d, p.max_inverse_depth + i)),
+                      hn::Load(d, p.min_inverse_depth + i)),
+              d, inverse_depth);
     const hn::RebindToSigned<FloatTag> di;
     alignas(64) std::int32_t pixel_x[kBlockTriangles], pixel_y[kBlockTriangles];
     hn::Store(hn::ConvertTo(di, from_left), di, pixel_x);
@@ -279,18 +281,20 @@ class TileImage {
     for (; lanes != 0; lanes &= lanes - 1) {
       const auto lane = static_cast<std::size_t>(__builtin_ctz(lanes));
       offer(static_cast<std::uint32_t>(pixel_x[lane]), static_cast<std::uint32_t>(pixel_y[lane]),
-            nearness[lane], block.triangle[i + lane]);
+            inverse_depth[lane], block.triangle[i + lane]);
     }
     return pairs;
   }
 
   /// A hit of one pixel of the tile.
-  HWY_INLINE void offer(std::uint32_t x, std::uint32_t y, float nearness, std::uint32_t id) {
+  HWY_INLINE void offer(std::uint32_t x, std::uint32_t y, float inverse_depth, std::uint32_t id) {
     const std::uint32_t square = y / kSquareSide * 4 + x / kSquareSide;
     const std::uint32_t at =
         square * kSquarePixels + y % kSquareSide * kSquareSide + x % kSquareSide;
-    if (nearness < nearness_[at] || (nearness == nearness_[at] && id >= triangle_[at])) return;
-    nearness_[at] = nearness;
+    if (inverse_depth < inverse_depth_[at] ||
+        (inverse_depth == inverse_depth_[at] && id >= triangle_[at]))
+      return;
+    inverse_depth_[at] = inverse_depth;
     triangle_[at] = id;
     changed_ |= 1u << square;
   }
@@ -299,24 +303,16 @@ class TileImage {
     empty_ = false;
     for (; changed_ != 0; changed_ &= changed_ - 1) {
       const auto square = static_cast<std::size_t>(__builtin_ctz(changed_));
-      far_[square] = least_of(nearness_ + square * kSquarePixels);
+      far_[square] = min_of_sixteen(inverse_depth_ + square * kSquarePixels);
     }
-    const float least = least_of(far_);
-    if (least == least_nearness_) return;
-    least_nearness_ = least;
-    farthest_ = 1.0f / least;
-  }
-
-  static HWY_INLINE float least_of(const float* sixteen) {
-    const FloatTag d;
-    auto least = hn::Load(d, sixteen);
-    for (std::size_t k = hn::Lanes(d); k < 16; k += hn::Lanes(d))
-      least = hn::Min(least, hn::Load(d, sixteen + k));
-    return hn::GetLane(hn::MinOfLanes(d, least));
+    const float min = min_of_sixteen(far_);
+    if (min == min_inverse_depth_) return;
+    min_inverse_depth_ = min;
+    farthest_ = 1.0f / min;
   }
 
   float left_, top_;  ///< of the first pixel's centre
-  float least_nearness_ = 0;
+  float min_inverse_depth_ = 0;
   float farthest_ = std::numeric_limits<float>::infinity();
   std::uint32_t changed_ = 0;  ///< squares with new hits
   bool begun_ = false;
@@ -324,10 +320,11 @@ class TileImage {
   alignas(64) float x_[4][kSquarePixels];  ///< of the pixel centres of each column of squares
   alignas(64) float y_[4][kSquarePixels];  ///< and of each row
   alignas(64) float far_[kSquares];
-  alignas(64) float nearness_[kTilePixels];
+  alignas(64) float inverse_depth_[kTilePixels];
   alignas(64) std::uint32_t triangle_[kTilePixels];
 };
 
+}  // namespace tiles
 }  // namespace HWY_NAMESPACE
 }  // namespace mdk
 HWY_AFTER_NAMESPACE();

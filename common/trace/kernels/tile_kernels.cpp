@@ -1,5 +1,5 @@
-// How a tile walks a structure: cells and boxes are tested with the tile's frustum, near ones
-// first; triangles met in leaves are tested sixteen at a time.
+// What a tile carries down a structure: its frustum, which culls boxes, and the depth of its
+// farthest hit. Triangles of the leaves entered are tested sixteen at a time.
 #include "common/trace/kernels/tile_kernels.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -7,223 +7,296 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 // after highway.h
-#include "common/trace/kernels/block_tester-inl.h"
-#include "common/trace/kernels/frustum-inl.h"
+#include "common/trace/kernels/tile_image-inl.h"
+#include "common/trace/kernels/walk-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace mdk {
 namespace HWY_NAMESPACE {
+namespace tiles {
 
-/// Walks a kd-tree (inverse frustum culling, RSH05): the cell shrinks on the way down, and is
-/// tested whole. Calls visit(reference) for what stands in the leaves met, near leaves first.
-template <class Counter, class Visit>
-void walk_kd(const KdTreeView& tree, const TileFrustum& frustum, const BlockTester<Counter>& tester,
-             const Visit& visit) {
-  if (tree.nodes.empty()) return;
-  TileFrustum::Cell stack[kMaxKdDepth + 2];
-  std::size_t size = 0;
-  stack[size++] = frustum.cell_of(tree.bounds, 0);
-  while (size > 0) {
-    TileFrustum::Cell& cell = stack[size - 1];
-    tester.counter().nodes(1);
-    if (frustum.misses(cell, tester.image().farthest())) {
-      --size;
-      continue;
-    }
-    const KdNode node = tree.nodes[cell.node];
-    if (node.is_leaf()) {
-      --size;
-      for (std::uint32_t i = 0; i < node.ref_count(); ++i) visit(tree.refs[node.first_ref() + i]);
-      continue;
-    }
-    // The far child takes the cell's place, the near one comes on top of it.
-    const std::uint32_t axis = node.axis();
-    const bool below_first = frustum.below_first(axis, node.split());
-    TileFrustum::Cell& next = stack[size++] = cell;
-    TileFrustum::Cell& below = below_first ? next : cell;
-    TileFrustum::Cell& above = below_first ? cell : next;
-    below.node = node.below();
-    above.node = node.above();
-    frustum.set_axis(below, axis, below.lo[axis], node.split());
-    frustum.set_axis(above, axis, node.split(), above.hi[axis]);
-  }
-}
-
-/// A child that waits to be visited, and the depth its box begins at.
-struct Waiting {
-  float depth;
-  WideBvhChild child;
+/// Counts work, or compiles to nothing.
+struct Counting {
+  TraceCounters& counters;
+  void nodes(std::uint64_t n) const { counters.node_visits += n; }
+  void clusters(std::uint64_t n) const { counters.clusters_entered += n; }
+  void setups(std::uint64_t n) const { counters.triangle_setups += n; }
+  void tests(std::uint64_t n) const { counters.triangle_tests += n; }
+};
+struct NoCounting {
+  void nodes(std::uint64_t) const {}
+  void clusters(std::uint64_t) const {}
+  void setups(std::uint64_t) const {}
+  void tests(std::uint64_t) const {}
 };
 
-/// Adds the children in `met`, nearest on top. Returns the new size.
-HWY_INLINE std::size_t push_nearest_last(const WideBvhNode& node, std::uint32_t met,
-                                         const float (&depth)[kBvhWidth], Waiting* stack,
-                                         std::size_t size) {
-  const std::size_t bottom = size;
-  for (; met != 0; met &= met - 1) {
-    const auto c = static_cast<std::size_t>(__builtin_ctz(met));
-    const Waiting entry{depth[c], node.child[c]};
-    std::size_t at = size++;
-    for (; at > bottom && stack[at - 1].depth < entry.depth; --at) stack[at] = stack[at - 1];
-    stack[at] = entry;
-  }
-  return size;
-}
-
-/// Every level leaves all but one child on the stack.
-inline constexpr std::size_t kWideStack = std::size_t{kMaxBvhDepth + 1} * kBvhWidth;
-
-/// Calls visit(leaf) for the leaves met, near ones first.
-template <class Counter, class Visit>
-void walk_bvh(std::span<const WideBvhNode> nodes, const TileFrustum& frustum,
-              const BlockTester<Counter>& tester, const Visit& visit) {
-  if (nodes.empty()) return;
-  Waiting stack[kWideStack];
-  alignas(64) float depth[kBvhWidth];
-  std::size_t size = 0;
-  const auto open = [&](const WideBvhNode& node) {
-    tester.counter().nodes(node.count);
-    const std::uint32_t met = frustum.meet(node, tester.image().farthest(), depth);
-    size = push_nearest_last(node, met, depth, stack, size);
-  };
-  open(nodes[0]);
-  while (size > 0) {
-    const Waiting next = stack[--size];
-    if (next.depth > tester.image().farthest()) continue;
-    if (next.child.is_leaf()) {
-      visit(next.child.index());
-    } else {
-      open(nodes[next.child.index()]);
-    }
-  }
-}
-
-/// Sees each triangle of a tile once, however many leaves hold it (mailboxing).
-class Mailbox {
+/// Blocks of triangles against one tile.
+template <class Counter>
+class BlockTester {
  public:
-  Mailbox(std::vector<std::uint32_t>& stamps, std::uint32_t serial)
-      : stamps_(stamps.data()), serial_(serial) {}
-  bool is_new(std::uint32_t item) {
-    if (stamps_[item] == serial_) return false;
-    stamps_[item] = serial_;
-    return true;
+  BlockTester(const TileRays& tile, const Vec3f* positions, const Counter& counter)
+      : tile_(tile), positions_(positions), counter_(counter), image_(tile) {}
+
+  const TileRays& tile() const { return tile_; }
+  const TileImage& image() const { return image_; }
+  const Counter& counter() const { return counter_; }
+
+  /// A block no one keeps: only what may be hit in this tile is projected.
+  void test(const TriangleBlock& block, ProjectedBlock& projected) {
+    counter_.setups(block.count);
+    Projector projector(block, *tile_.pixel_from_world, positions_, projected);
+    projector.run([&](std::size_t i) { return image_.may_hit(projected, i); });
+    finish(block, projected, projected.live);
+  }
+
+  /// A block that serves the whole frame.
+  void test(const TriangleBlock& block, std::uint32_t number, ProjectionCache& cache,
+            ProjectedBlock& spare) {
+    const FloatTag d;
+    const ProjectedBlock& projected = cache.get(number, spare, [&](ProjectedBlock& out) {
+      Projector projector(block, *tile_.pixel_from_world, positions_, out);
+      projector.run([&](std::size_t) { return hn::Eq(hn::Zero(d), hn::Zero(d)); });
+    });
+    counter_.setups(block.count);
+    if (projected.live == 0) return;
+    std::uint32_t mask = 0;
+    for (std::size_t i = 0; i < kBlockTriangles; i += hn::Lanes(d))
+      mask |= mask_bits(d, image_.may_hit(projected, i)) << i;
+    finish(block, projected, mask & projected.live);
   }
 
  private:
-  std::uint32_t* stamps_;
-  std::uint32_t serial_;
+  void finish(const TriangleBlock& block, const ProjectedBlock& projected, std::uint32_t mask) {
+    if ((mask & projected.behind) != 0) mask &= ~missed_by_sides(block, projected.behind);
+    if (mask != 0) counter_.tests(image_.test(block, projected, mask));
+  }
+
+  /// Of the triangles in `behind`, those with all corners on the outer side of one of the tile's
+  /// four planes: where a triangle reaches behind the eye, this stands for its bounds.
+  std::uint32_t missed_by_sides(const TriangleBlock& block, std::uint32_t behind) const {
+    const FloatTag d;
+    std::uint32_t missed = 0;
+    for (std::size_t i = 0; i < kBlockTriangles; i += hn::Lanes(d)) {
+      const Corners p = gather_corners(block, i, *tile_.pixel_from_world, positions_);
+      const auto one_side = [&](FloatVec a, FloatVec b, FloatVec c, std::uint32_t first) {
+        const auto offset = [&](FloatVec coordinate, FloatVec depth, std::uint32_t edge) {
+          return hn::Sub(coordinate, hn::Mul(depth, hn::Set(d, static_cast<float>(edge))));
+        };
+        const std::uint32_t last = first + kTileSide;
+        const auto below = hn::Max(hn::Max(offset(a, p.a.z, first), offset(b, p.b.z, first)),
+                                   offset(c, p.c.z, first));
+        const auto above = hn::Min(hn::Min(offset(a, p.a.z, last), offset(b, p.b.z, last)),
+                                   offset(c, p.c.z, last));
+        return hn::Or(hn::Lt(below, hn::Zero(d)), hn::Gt(above, hn::Zero(d)));
+      };
+      missed |= mask_bits(d, hn::Or(one_side(p.a.x, p.b.x, p.c.x, tile_.x),
+                                    one_side(p.a.y, p.b.y, p.c.y, tile_.y)))
+                << i;
+    }
+    return missed & behind;
+  }
+
+  const TileRays& tile_;
+  const Vec3f* positions_;
+  Counter counter_;
+  TileImage image_;
+};
+
+/// A tile's frustum on its way down one tree (walk-inl.h): the four sides as forms, and the depth
+/// over boxes, which is least at the corner the depth's gradient picks.
+template <class Counter>
+class TileInTree {
+ public:
+  struct Cell : BoxForms<kSides>::Cell {
+    float nearest[3];  ///< what each axis adds to the least depth
+  };
+
+  TileInTree(const FrustumForms& forms, const BlockTester<Counter>& tester)
+      : forms_(forms), tester_(tester) {
+    const hn::CappedTag<float, 4 * kSides> d;
+    const TileRays& tile = tester.tile();
+    const float x = static_cast<float>(tile.x), y = static_cast<float>(tile.y);
+    constexpr float kSide = kTileSide;
+    alignas(64)
+        const float place[4 * kSides] = {x, x + kSide, y, y + kSide, x, x + kSide, y, y + kSide,
+                                         x, x + kSide, y, y + kSide, x, x + kSide, y, y + kSide};
+    for (std::size_t i = 0; i < 4 * kSides; i += hn::Lanes(d))
+      hn::Store(hn::MulAdd(hn::Load(d, forms.step + i), hn::Load(d, place + i),
+                           hn::Load(d, forms.base + i)),
+                d, sides_.row(0) + i);
+    sides_.choose_corners();
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      near_plane_[axis] = static_cast<std::uint8_t>(2 * axis + (forms.depth[axis] < 0));
+  }
+
+  /// Not those outside, nor those farther than all hits; `depth` gets each child's least depth.
+  HWY_INLINE std::uint32_t enter(const WideBvhNode& node, float (&depth)[kBvhWidth]) const {
+    tester_.counter().nodes(node.count);
+    const hn::CappedTag<float, kBvhWidth> d;
+    const float farthest = tester_.image().farthest();
+    std::uint32_t entered = 0;
+    for (std::size_t i = 0; i < kBvhWidth; i += hn::Lanes(d)) {
+      const auto plane = [&](std::size_t r) { return hn::Load(d, node.bounds[r] + i); };
+      const auto largest = [&](std::size_t k) { return sides_.largest(d, node.bounds, i, k); };
+      const auto least = hn::Min(hn::Min(largest(0), largest(1)), hn::Min(largest(2), largest(3)));
+      const auto least_depth = depth_at(d, plane(near_plane_[0]), plane(near_plane_[1]),
+                                        plane(near_plane_[2]), forms_.depth_offset);
+      hn::Store(least_depth, d, depth + i);
+      auto outside = hn::Or(hn::Lt(least, hn::Zero(d)), hn::Gt(least_depth, hn::Set(d, farthest)));
+      if (!forms_.in_front) {
+        const auto deepest = depth_at(d, plane(near_plane_[0] ^ 1u), plane(near_plane_[1] ^ 1u),
+                                      plane(near_plane_[2] ^ 1u), forms_.front_offset);
+        outside = hn::Or(outside, hn::Lt(deepest, hn::Zero(d)));
+      }
+      entered |= mask_bits(d, hn::Not(outside)) << i;
+    }
+    return entered & ((1u << node.count) - 1);
+  }
+  HWY_INLINE bool is_past(float depth) const { return depth > tester_.image().farthest(); }
+
+  HWY_INLINE void set_axis(Cell& cell, std::size_t axis, float lo, float hi) const {
+    sides_.set_axis(cell, axis, lo, hi);
+    cell.nearest[axis] = forms_.depth[axis] * (forms_.depth[axis] < 0 ? hi : lo);
+  }
+  HWY_INLINE bool misses(const Cell& cell) const {
+    tester_.counter().nodes(1);
+    return is_missed(cell);
+  }
+  /// Whether it misses a tree as a whole: looked at before a cluster is posed, and not counted.
+  HWY_INLINE bool misses_all(const KdTreeView& tree) const {
+    return is_missed(root_cell(*this, tree.bounds));
+  }
+  bool below_first(std::uint32_t axis, float split) const { return forms_.eye[axis] <= split; }
+
+  static constexpr bool finished() { return false; }
+
+ private:
+  /// Outside, or farther than all hits.
+  HWY_INLINE bool is_missed(const Cell& cell) const {
+    if (sides_.is_outside(cell)) return true;
+    const float depth = cell.nearest[0] + cell.nearest[1] + cell.nearest[2];
+    if (depth + forms_.depth_offset > tester_.image().farthest()) return true;
+    if (forms_.in_front) return false;
+    float deepest = forms_.front_offset;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      deepest += forms_.depth[axis] * (forms_.depth[axis] < 0 ? cell.lo[axis] : cell.hi[axis]);
+    return deepest < 0;
+  }
+
+  template <class D, class V>
+  HWY_INLINE V depth_at(D d, V x, V y, V z, float offset) const {
+    const Vec3f& n = forms_.depth;
+    return hn::MulAdd(
+        hn::Set(d, n.x), x,
+        hn::MulAdd(hn::Set(d, n.y), y, hn::MulAdd(hn::Set(d, n.z), z, hn::Set(d, offset))));
+  }
+
+  const FrustumForms& forms_;
+  const BlockTester<Counter>& tester_;
+  BoxForms<kSides> sides_;
+  std::uint8_t near_plane_[3];
+};
+
+/// What a trace needs at hand.
+template <class Counter>
+struct TileTrace {
+  const TraceScene& scene;
+  BlockTester<Counter>& tester;
+  TileScratch& scratch;
+
+  TileInTree<Counter> rays_in(const FrustumForms& forms) const { return {forms, tester}; }
 };
 
 template <class Counter>
-void brute_force(const TriangleSoup& soup, BlockTester<Counter>& tester, TileScratch& scratch) {
-  TriangleBatch<Counter> batch(tester, soup.triangles, scratch.block);
-  for (std::uint32_t i = 0; i < soup.triangle_count; ++i) batch.push(i);
+void trace(const TileTrace<Counter>& t, std::monostate) {
+  const auto test = [&](const TriangleBlock& block) { t.tester.test(block, t.scratch.block); };
+  TriangleBatch batch(t.scene.triangles, test);
+  for (std::uint32_t i = 0; i < t.scene.triangle_count; ++i) batch.push(i);
   batch.flush();
 }
 
 template <class Counter>
-void kd(const TileRays& tile, const KdView& tree, const TriangleSoup& soup,
-        BlockTester<Counter>& tester, TileScratch& scratch) {
-  scratch.begin_tile(soup.triangle_count, 0);
-  Mailbox triangles(scratch.triangle_stamps, scratch.serial);
-  TriangleBatch<Counter> batch(tester, soup.triangles, scratch.block);
-  walk_kd(tree.tree, TileFrustum(tree.forms, tile), tester, [&](std::uint32_t triangle) {
-    if (triangles.is_new(triangle)) batch.push(triangle);
-  });
-  batch.flush();
-}
-
-template <class Counter>
-void two_level_kd(const TileRays& tile, const TopLevelKdView& top, const TriangleSoup& soup,
-                  BlockTester<Counter>& tester, TileScratch& scratch) {
-  scratch.begin_tile(soup.triangle_count, top.clusters.size());
-  Mailbox seen_triangles(scratch.triangle_stamps, scratch.serial);
-  Mailbox seen_clusters(scratch.cluster_stamps, scratch.serial);
-  TriangleBatch<Counter> batch(tester, soup.triangles, scratch.block);
-  const auto enter = [&](std::uint32_t c) {
-    if (!seen_clusters.is_new(c)) return;
-    const KdView& cluster = top.clusters[c];
-    const TileFrustum local(cluster.forms, tile);
-    if (local.misses(local.cell_of(cluster.tree.bounds, 0), tester.image().farthest())) return;
-    tester.counter().clusters(1);
-    top.mesh.require(c);
-    walk_kd(cluster.tree, local, tester, [&](std::uint32_t triangle) {
-      if (seen_triangles.is_new(triangle)) batch.push(triangle);
-    });
-  };
-  walk_kd(top.tree.tree, TileFrustum(top.tree.forms, tile), tester, enter);
-  batch.flush();
-}
-
-template <class Counter>
-void test_leaf(const BlockSoup& soup, std::uint32_t number, BlockTester<Counter>& tester,
-               TileScratch& scratch) {
-  const TriangleBlock& block = soup.blocks[number];
-  if (soup.cache != nullptr) {
-    tester.test(block, number, *soup.cache, scratch.block);
+void test_leaf(const TileTrace<Counter>& t, std::uint32_t number) {
+  const TriangleBlock& block = t.scene.blocks[number];
+  if (t.scene.projected_blocks != nullptr) {
+    t.tester.test(block, number, *t.scene.projected_blocks, t.scratch.block);
   } else {
-    tester.test(block, scratch.block);
+    t.tester.test(block, t.scratch.block);
   }
 }
 
 template <class Counter>
-void bvh(const TileRays& tile, const BvhView& tree, const BlockSoup& soup,
-         BlockTester<Counter>& tester, TileScratch& scratch) {
-  walk_bvh(tree.nodes, TileFrustum(tree.forms, tile), tester,
-           [&](std::uint32_t leaf) { test_leaf(soup, tree.first_leaf + leaf, tester, scratch); });
-}
-
-template <class Counter>
-void two_level_bvh(const TileRays& tile, const TopLevelView& top, const BlockSoup& soup,
-                   BlockTester<Counter>& tester, TileScratch& scratch) {
-  walk_bvh(top.tree.nodes, TileFrustum(top.tree.forms, tile), tester, [&](std::uint32_t leaf) {
-    tester.counter().clusters(1);
-    const std::uint32_t c = top.cluster_of_leaf[leaf];
-    top.mesh.require(c);
-    bvh(tile, top.clusters[c], soup, tester, scratch);
+void trace(const TileTrace<Counter>& t, const BvhLevels& levels) {
+  const auto test_leaves = [&](const TreeLevel<BvhView>& level) {
+    const auto rays = t.rays_in(level.forms);
+    walk_bvh(level.tree.nodes, rays,
+             [&](std::uint32_t leaf) { test_leaf(t, level.tree.first_leaf + leaf); });
+  };
+  if (levels.clusters.empty()) return test_leaves(levels.top);
+  const auto rays = t.rays_in(levels.top.forms);
+  walk_bvh(levels.top.tree.nodes, rays, [&](std::uint32_t leaf) {
+    t.tester.counter().clusters(1);
+    const std::uint32_t c = levels.cluster_of_leaf[leaf];
+    t.scene.mesh->require(c);
+    test_leaves(levels.clusters[c]);
   });
 }
 
-/// Traces with counting or without, then stores what was hit, if anything.
-template <class Walk>
-bool with_tester(const TileRays& tile, const Vec3f* positions, TileHits& hits,
-                 TraceCounters* counters, const Walk& walk) {
-  const auto run = [&](auto counter) {
-    BlockTester<decltype(counter)> tester(tile, positions, counter);
-    walk(tester);
-    if (tester.image().empty()) return false;
-    tester.image().store(hits);
-    return true;
+template <class Counter>
+void trace(const TileTrace<Counter>& t, const KdLevels& levels) {
+  t.scratch.begin_tile(t.scene.triangle_count, levels.clusters.size());
+  Mailbox seen_triangles(t.scratch.triangle_stamps, t.scratch.serial);
+  Mailbox seen_clusters(t.scratch.cluster_stamps, t.scratch.serial);
+  const auto test = [&](const TriangleBlock& block) { t.tester.test(block, t.scratch.block); };
+  TriangleBatch batch(t.scene.triangles, test);
+  const auto test_leaves = [&](const KdTreeView& tree, const TileInTree<Counter>& rays) {
+    walk_kd(tree, rays, [&](std::uint32_t triangle) {
+      if (seen_triangles.is_new(triangle)) batch.push(triangle);
+    });
   };
-  return counters != nullptr ? run(Counting{*counters}) : run(NoCounting{});
+  const auto top = t.rays_in(levels.top.forms);
+  if (levels.clusters.empty()) {
+    test_leaves(levels.top.tree, top);
+  } else {
+    walk_kd(levels.top.tree, top, [&](std::uint32_t c) {
+      if (!seen_clusters.is_new(c)) return;
+      const TreeLevel<KdTreeView>& cluster = levels.clusters[c];
+      const auto rays = t.rays_in(cluster.forms);
+      if (rays.misses_all(cluster.tree)) return;
+      t.tester.counter().clusters(1);
+      t.scene.mesh->require(c);
+      test_leaves(cluster.tree, rays);
+    });
+  }
+  batch.flush();
 }
 
-bool BruteForce(const TileRays& tile, const TriangleSoup& soup, TileHits& hits,
-                TileScratch& scratch, TraceCounters* counters) {
-  return with_tester(tile, soup.positions, hits, counters,
-                     [&](auto& tester) { brute_force(soup, tester, scratch); });
-}
-bool Kd(const TileRays& tile, const KdView& tree, const TriangleSoup& soup, TileHits& hits,
-        TileScratch& scratch, TraceCounters* counters) {
-  return with_tester(tile, soup.positions, hits, counters,
-                     [&](auto& tester) { kd(tile, tree, soup, tester, scratch); });
-}
-bool TwoLevelKd(const TileRays& tile, const TopLevelKdView& top, const TriangleSoup& soup,
-                TileHits& hits, TileScratch& scratch, TraceCounters* counters) {
-  return with_tester(tile, soup.positions, hits, counters,
-                     [&](auto& tester) { two_level_kd(tile, top, soup, tester, scratch); });
-}
-bool OneLevelBvh(const TileRays& tile, const BvhView& tree, const BlockSoup& soup, TileHits& hits,
-                 TileScratch& scratch, TraceCounters* counters) {
-  return with_tester(tile, soup.positions, hits, counters,
-                     [&](auto& tester) { bvh(tile, tree, soup, tester, scratch); });
-}
-bool TwoLevelBvh(const TileRays& tile, const TopLevelView& top, const BlockSoup& soup,
-                 TileHits& hits, TileScratch& scratch, TraceCounters* counters) {
-  return with_tester(tile, soup.positions, hits, counters,
-                     [&](auto& tester) { two_level_bvh(tile, top, soup, tester, scratch); });
+/// Traces with counting or without, then stores what was hit, if anything.
+template <class Counter, class Structure>
+HWY_NOINLINE bool trace_and_store(const TileRays& tile, const TraceScene& scene,
+                                  const Structure& structure, TileHits& hits, TileScratch& scratch,
+                                  Counter counter) {
+  BlockTester<Counter> tester(tile, scene.positions, counter);
+  trace(TileTrace<Counter>{scene, tester, scratch}, structure);
+  if (tester.image().empty()) return false;
+  tester.image().store(hits);
+  return true;
 }
 
+bool TraceTile(const TileRays& tile, const TraceScene& scene, TileHits& hits, TileScratch& scratch,
+               TraceCounters* counters) {
+  const auto with = [&](const auto& structure) {
+    if (counters == nullptr)
+      return trace_and_store(tile, scene, structure, hits, scratch, NoCounting{});
+    return trace_and_store(tile, scene, structure, hits, scratch, Counting{*counters});
+  };
+  if (const auto* bvh = std::get_if<BvhLevels>(&scene.structure)) return with(*bvh);
+  if (const auto* kd = std::get_if<KdLevels>(&scene.structure)) return with(*kd);
+  return with(std::monostate());
+}
+
+}  // namespace tiles
+using tiles::TraceTile;
 }  // namespace HWY_NAMESPACE
 }  // namespace mdk
 HWY_AFTER_NAMESPACE();
@@ -231,32 +304,11 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace mdk {
 
-HWY_EXPORT(BruteForce);
-HWY_EXPORT(Kd);
-HWY_EXPORT(TwoLevelKd);
-HWY_EXPORT(OneLevelBvh);
-HWY_EXPORT(TwoLevelBvh);
+HWY_EXPORT(TraceTile);
 
-bool trace_tile_brute_force(const TileRays& tile, const TriangleSoup& soup, TileHits& hits,
-                            TileScratch& scratch, TraceCounters* counters) {
-  return HWY_DYNAMIC_DISPATCH(BruteForce)(tile, soup, hits, scratch, counters);
-}
-bool trace_tile_kd(const TileRays& tile, const KdView& tree, const TriangleSoup& soup,
-                   TileHits& hits, TileScratch& scratch, TraceCounters* counters) {
-  return HWY_DYNAMIC_DISPATCH(Kd)(tile, tree, soup, hits, scratch, counters);
-}
-bool trace_tile_two_level_kd(const TileRays& tile, const TopLevelKdView& top,
-                             const TriangleSoup& soup, TileHits& hits, TileScratch& scratch,
-                             TraceCounters* counters) {
-  return HWY_DYNAMIC_DISPATCH(TwoLevelKd)(tile, top, soup, hits, scratch, counters);
-}
-bool trace_tile_bvh(const TileRays& tile, const BvhView& tree, const BlockSoup& soup,
-                    TileHits& hits, TileScratch& scratch, TraceCounters* counters) {
-  return HWY_DYNAMIC_DISPATCH(OneLevelBvh)(tile, tree, soup, hits, scratch, counters);
-}
-bool trace_tile_two_level_bvh(const TileRays& tile, const TopLevelView& top, const BlockSoup& soup,
-                              TileHits& hits, TileScratch& scratch, TraceCounters* counters) {
-  return HWY_DYNAMIC_DISPATCH(TwoLevelBvh)(tile, top, soup, hits, scratch, counters);
+bool trace_tile(const TileRays& tile, const TraceScene& scene, TileHits& hits, TileScratch& scratch,
+                TraceCounters* counters) {
+  return HWY_DYNAMIC_DISPATCH(TraceTile)(tile, scene, hits, scratch, counters);
 }
 
 PixelFromWorld make_pixel_from_world(const PinholeRays& rays) {

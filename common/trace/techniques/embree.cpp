@@ -7,14 +7,14 @@
 #include <tbb/enumerable_thread_specific.h>
 
 #include <algorithm>
-#include <cmath>
 #include <atomic>
+#include <cmath>
 #include <limits>
 #include <string>
 
 #include "common/base/error.h"
 #include "common/base/isa.h"
-#include "common/trace/techniques/makers.h"
+#include "common/trace/techniques/structure_technique.h"
 #include "common/trace/techniques/technique_chooser.h"
 
 namespace mdk {
@@ -128,7 +128,7 @@ class TilePackets {
 struct ImageBounds {
   float left, right, top, bottom;
 
-  bool meets(const TileRays& tile) const {
+  bool overlaps(const TileRays& tile) const {
     const auto x = static_cast<float>(tile.x), y = static_cast<float>(tile.y);
     return x <= right && x + kTileSide >= left && y <= bottom && y + kTileSide >= top;
   }
@@ -254,7 +254,7 @@ class EmbreeTechnique final : public Technique {
     bounds_ = image_bounds(box, rays);
   }
   bool trace(const TileRays& tile, TileHits& hits, TileScratch&, TraceCounters*) const override {
-    return bounds_.meets(tile) && packets_.local().trace(scene_, tile, hits);
+    return bounds_.overlaps(tile) && packets_.local().trace(scene_, tile, hits);
   }
   void occlude(RayBeam& beam, TileScratch&) const override {
     beam_packets_.local().occlude(scene_, beam);

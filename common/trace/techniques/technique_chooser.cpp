@@ -10,10 +10,10 @@
 namespace mdk {
 namespace {
 
-constexpr std::size_t kMostTimedTiles = 16384;
-constexpr std::size_t kTilesPerDear = 32;
-constexpr float kInterrupted = 8;     ///< times what a dear tile takes
-constexpr double kMostGrowth = 1.25;  ///< of a frame on the last one that is believed
+constexpr std::size_t kMaxTimedTiles = 16384;
+constexpr std::size_t kTilesPerExpensive = 32;
+constexpr float kInterrupted = 8;    ///< times what an expensive tile takes
+constexpr double kMaxGrowth = 1.25;  ///< of a frame on the last one that is believed
 constexpr int kTrialsToSettle = 2;
 constexpr std::size_t kFramesBetweenChecks = 64;
 constexpr double kHopeless = 1.4;  ///< times the best: not worth a second trial
@@ -22,7 +22,7 @@ constexpr double kTrialShare = 0.03;     ///< of all frames' time
 constexpr double kFramesInAdvance = 25;  ///< trials may spend the share of so many frames to come
 constexpr double kTrialFrames = 2;
 constexpr double kUnknownExcess = 0.3;  ///< expected of a first trial, in frames
-constexpr std::size_t kMostViews = 32;
+constexpr std::size_t kMaxViews = 32;
 
 /// Looking at a clock costs as much as tracing an empty tile, so one tile in so many is timed.
 constexpr std::uint32_t kTilesPerTimed = 16;
@@ -60,7 +60,7 @@ TechniqueChooser::TechniqueChooser(const Model& model,
     : model_(model),
       candidates_(candidates),
       techniques_(candidates.size()),
-      tile_ms_(kMostTimedTiles) {}
+      tile_ms_(kMaxTimedTiles) {}
 
 void TechniqueChooser::prebuild(const PosedMesh& mesh) {
   if (!views_.empty()) {
@@ -94,7 +94,7 @@ bool TechniqueChooser::trace(const TileRays& tile, TileHits& hits, TileScratch& 
   const std::size_t number = timed_++;
   const WorkClock clock(*mesh_);
   const bool is_hit = serving.trace(tile, hits, scratch, counters);
-  if (number < kMostTimedTiles) tile_ms_[number] = static_cast<float>(clock.milliseconds());
+  if (number < kMaxTimedTiles) tile_ms_[number] = static_cast<float>(clock.milliseconds());
   return is_hit;
 }
 
@@ -156,22 +156,22 @@ TechniqueChooser::View& TechniqueChooser::enter_view(const PinholeRays& rays) {
   view.standings.resize(candidates_.size());
   view.incumbent = view.last_challenger = serving_;
   view.next_check = kFramesBetweenChecks;
-  if (views_.size() == kMostViews) views_.erase(views_.begin());
+  if (views_.size() == kMaxViews) views_.erase(views_.begin());
   views_.push_back(std::move(view));
   return views_.back();
 }
 
 /// Update and trace of the last frame, from its timed tiles; 0 where there were none.
 double TechniqueChooser::measured_frame_ms() {
-  const std::size_t timed = std::min<std::size_t>(timed_, kMostTimedTiles);
+  const std::size_t timed = std::min<std::size_t>(timed_, kMaxTimedTiles);
   if (timed == 0) return 0;
-  // Tiles that take much longer than other dear ones were interrupted.
+  // Tiles that take much longer than other expensive ones were interrupted.
   const auto end = tile_ms_.begin() + static_cast<std::ptrdiff_t>(timed);
-  const auto dear = tile_ms_.begin() + static_cast<std::ptrdiff_t>(timed / kTilesPerDear);
-  std::nth_element(tile_ms_.begin(), dear, end, std::greater<>());
+  const auto expensive = tile_ms_.begin() + static_cast<std::ptrdiff_t>(timed / kTilesPerExpensive);
+  std::nth_element(tile_ms_.begin(), expensive, end, std::greater<>());
   double sum = 0;
   for (auto tile = tile_ms_.begin(); tile != end; ++tile)
-    sum += static_cast<double>(std::min(*tile, kInterrupted * *dear));
+    sum += static_cast<double>(std::min(*tile, kInterrupted * *expensive));
   const double scale = static_cast<double>(timed_) / static_cast<double>(timed);
   return update_ms_ + sum * scale * kTilesPerTimed / thread_count();
 }
@@ -181,7 +181,7 @@ void TechniqueChooser::learn(View& view, double frame_ms) const {
   if (serving_ == view.incumbent || view.unit_ms == 0) {
     const double unit = frame_ms / served.relative_cost;
     view.unit_ms =
-        view.unit_ms == 0 ? unit : (view.unit_ms + std::min(unit, kMostGrowth * view.unit_ms)) / 2;
+        view.unit_ms == 0 ? unit : (view.unit_ms + std::min(unit, kMaxGrowth * view.unit_ms)) / 2;
     return;
   }
   view.spent_ms += std::max(0.0, frame_ms - view.cost_ms(view.incumbent));

@@ -55,7 +55,7 @@ class TechniqueChooser final : public Technique {
     PinholeRays rays{};
     std::vector<Standing> standings;  ///< one per candidate
     std::size_t incumbent = 0;
-    double unit_ms = 0;  ///< what a relative cost of 1 is at present
+    double unit_ms = 0;  ///< what a relative cost of 1 is now
     std::size_t frames = 0;
     std::size_t next_check = 0;  ///< frame from which a settled choice is questioned
     std::size_t last_challenger = 0;
@@ -75,13 +75,13 @@ class TechniqueChooser final : public Technique {
   const Model& model_;
   std::span<const TechniqueCandidate> candidates_;
   std::vector<std::unique_ptr<Technique>> techniques_;  ///< made when first needed
-  std::vector<View> views_;                             ///< the present one last
-  std::size_t serving_ = 0;                             ///< the present frame
+  std::vector<View> views_;                             ///< the current one last
+  std::size_t serving_ = 0;                             ///< the current frame
   bool is_first_frame_ = true;       ///< of the view: what it costs is not typical
   bool is_warming_up_ = false;       ///< the first frame of a trial
-  const PosedMesh* mesh_ = nullptr;  ///< of the present frame
+  const PosedMesh* mesh_ = nullptr;  ///< of the current frame
   double update_ms_ = 0;
-  mutable std::vector<float> tile_ms_;          ///< of the timed tiles of the present frame
+  mutable std::vector<float> tile_ms_;          ///< of the timed tiles of the current frame
   mutable std::atomic<std::size_t> timed_ = 0;  ///< tiles
 };
 

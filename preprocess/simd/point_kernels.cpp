@@ -1,16 +1,17 @@
 // A vector holds one coordinate of as many points as it has lanes. Sums have kSumLanes lanes
 // whatever the vector's width: a narrower vector takes them in several passes, so that each lane
 // adds up the same points in the same order.
-#include "common/trace/kernels/point_kernels.h"
+#include "preprocess/simd/point_kernels.h"
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "common/trace/kernels/point_kernels.cpp"
+#define HWY_TARGET_INCLUDE "preprocess/simd/point_kernels.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 // after highway.h
 HWY_BEFORE_NAMESPACE();
 namespace mdk {
 namespace HWY_NAMESPACE {
+namespace points {
 namespace hn = hwy::HWY_NAMESPACE;
 
 using SumTag = hn::CappedTag<double, kSumLanes>;
@@ -216,6 +217,9 @@ void AddPulls(const ScaledCoordinate& u, const PointRow& points, const float* we
     for (std::size_t l = 0; l < kSumLanes; ++l) sum[s] += static_cast<double>(lanes[s][l]);
 }
 
+}  // namespace points
+using points::AddDistances, points::AddPowers, points::AddPulls;
+using points::Cross, points::Extend, points::Second;
 }  // namespace HWY_NAMESPACE
 }  // namespace mdk
 HWY_AFTER_NAMESPACE();

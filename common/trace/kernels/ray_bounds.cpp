@@ -1,4 +1,4 @@
-#include "common/trace/kernels/frustum_forms.h"
+#include "common/trace/kernels/ray_bounds.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,10 +9,21 @@ namespace {
 /// Past this, products with coordinates might overflow: such a form tells nothing.
 constexpr double kLargestForm = 1e30;
 
-FrustumBasis make_basis(const Vec3d& origin, const Vec3d& corner, const Vec3d& du,
-                        const Vec3d& dv) {
+/// The products of the pinhole's vectors that all bounds of a frame are made of, in double.
+struct FrustumBasis {
+  Vec3d origin;
+  Vec3d corner_x_dv, du_x_corner, du_x_dv;  ///< cross products
+  double det = 0;          ///< of (corner, du, dv); its sign tells a mirrored basis
+  double plane_error = 0;  ///< bounds the rounding of a side plane's normal, per component
+  double depth_error = 0;  ///< the same for the gradient of the depth
+};
+
+FrustumBasis make_basis(const PinholeRays& rays, const Affine3d& local_from_world) {
+  const Vec3d corner = local_from_world.vector(to_double(rays.corner));
+  const Vec3d du = local_from_world.vector(to_double(rays.du));
+  const Vec3d dv = local_from_world.vector(to_double(rays.dv));
   FrustumBasis basis;
-  basis.origin = origin;
+  basis.origin = local_from_world.point(to_double(rays.origin));
   basis.corner_x_dv = cross(corner, dv);
   basis.du_x_corner = cross(du, corner);
   basis.du_x_dv = cross(du, dv);
@@ -75,26 +86,20 @@ void set_depth(FrustumForms& forms, const FrustumBasis& basis, const Aabb& bound
   forms.in_front = nearest > 0;
 }
 
+/// How far coordinates of points in the box may be from 0.
+Vec3d reach_of(const Aabb& box) {
+  const Vec3d lo = absolute(to_double(box.lo)), hi = absolute(to_double(box.hi));
+  return {std::max(lo.x, hi.x), std::max(lo.y, hi.y), std::max(lo.z, hi.z)};
+}
+
 }  // namespace
 
-FrustumBasis make_frustum_basis(const PinholeRays& rays) {
-  return make_basis(to_double(rays.origin), to_double(rays.corner), to_double(rays.du),
-                    to_double(rays.dv));
-}
-
-FrustumBasis make_frustum_basis(const PinholeRays& rays, const Affine3d& local_from_world) {
-  return make_basis(local_from_world.point(to_double(rays.origin)),
-                    local_from_world.vector(to_double(rays.corner)),
-                    local_from_world.vector(to_double(rays.du)),
-                    local_from_world.vector(to_double(rays.dv)));
-}
-
-FrustumForms make_frustum_forms(const FrustumBasis& basis, const Aabb& bounds) {
+FrustumForms make_frustum_forms(const PinholeRays& world_rays, const Affine3d& local_from_world,
+                                const Aabb& bounds) {
+  const FrustumBasis basis = make_basis(world_rays, local_from_world);
   FrustumForms forms;
   // How far coordinates and the eye reach from the origin: what roundings are relative to.
-  const Vec3d lo = absolute(to_double(bounds.lo)), hi = absolute(to_double(bounds.hi));
-  const Vec3d reach = absolute(basis.origin) +
-                      Vec3d{std::max(lo.x, hi.x), std::max(lo.y, hi.y), std::max(lo.z, hi.z)};
+  const Vec3d reach = absolute(basis.origin) + reach_of(bounds);
   const double side = basis.det < 0 ? -1.0 : 1.0;
   // n.(ray through X) = det (x - X) for the plane at x: left sides take -n, right sides n.
   set_side(forms, 0, basis.corner_x_dv * -side, basis.du_x_dv * -side, basis, reach);
@@ -104,6 +109,27 @@ FrustumForms make_frustum_forms(const FrustumBasis& basis, const Aabb& bounds) {
   set_depth(forms, basis, bounds, reach);
   forms.eye = to_float(basis.origin);
   return forms;
+}
+
+BeamSpace make_beam_space(const Affine3d& local_from_world, const Aabb& bounds, const Aabb& mesh) {
+  BeamSpace space;
+  const Vec3d x = local_from_world.column(0), y = local_from_world.column(1),
+              z = local_from_world.column(2);
+  // A mirrored basis turns every sign; the forms are to have the world's.
+  const double det = local_from_world.determinant(), side = det < 0 ? -1.0 : 1.0;
+  space.cofactor[0] = cross(y, z) * side;
+  space.cofactor[1] = cross(z, x) * side;
+  space.cofactor[2] = cross(x, y) * side;
+  space.det = det * side;
+  // As in make_basis().
+  space.rounding =
+      0x1p-46 * (length(x) * length(y) + length(y) * length(z) + length(z) * length(x));
+  space.reach = reach_of(bounds);
+  if (!mesh.empty()) {
+    const Vec3d extent = to_double(mesh.hi) - to_double(mesh.lo);
+    space.world_reach = extent.x + extent.y + extent.z;
+  }
+  return space;
 }
 
 }  // namespace mdk

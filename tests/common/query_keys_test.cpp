@@ -1,6 +1,6 @@
-// The clusters a ray meets: none that it enters is missed, few that it passes are met, the nearest
+// The clusters whose boxes a ray enters: none is missed, hardly any it passes is named, the nearest
 // come first, on every instruction set.
-#include "common/trace/box_columns.h"
+#include "common/trace/query_keys.h"
 
 #include <gtest/gtest.h>
 
@@ -62,9 +62,9 @@ double entry(const Line& line, const Aabb& box, double margin, double t_max) {
   return near <= far ? near : std::numeric_limits<double>::infinity();
 }
 
-class MeetBoxes : public testing::TestWithParam<std::size_t> {};
+class EnterBoxes : public testing::TestWithParam<std::size_t> {};
 
-TEST_P(MeetBoxes, FindsEveryBoxThatTheRayEntersAndHardlyAnyOther) {
+TEST_P(EnterBoxes, FindsEveryBoxThatTheRayEntersAndHardlyAnyOther) {
   const ResetIsa reset;
   const std::size_t count = GetParam();
   const ModelStorage storage = moving_clusters(count, 7 + count);
@@ -77,22 +77,22 @@ TEST_P(MeetBoxes, FindsEveryBoxThatTheRayEntersAndHardlyAnyOther) {
     const KeyInterval at =
         i % 3 == 0 ? at_key(i % 2) : KeyInterval{0, 1, static_cast<float>(random.unit())};
     const Line line = random_line(random);
-    const BoxRay ray = make_box_ray(line.origin, line.direction, Affine3d{}, bounds, 0);
+    const BoxRay ray = make_box_ray({line.origin, line.direction}, Affine3d{}, bounds, 0);
     const float t_max = i % 2 == 0 ? std::numeric_limits<float>::infinity() : 0.5f;
     for (const std::string_view isa : available_isas()) {
       limit_isa(isa);
-      std::vector<MetBox> met(count);
-      met.resize(meet_boxes(ray, columns.at(at), t_max, met.data()));
-      EXPECT_TRUE(std::ranges::is_sorted(met, {}, &MetBox::enter)) << isa;
+      std::vector<EnteredBox> named(count);
+      named.resize(enter_boxes(ray, columns.at(at), t_max, named.data()));
+      EXPECT_TRUE(std::ranges::is_sorted(named, {}, &EnteredBox::enter)) << isa;
       for (std::uint32_t c = 0; c < count; ++c) {
-        const auto found = std::ranges::find(met, c, &MetBox::box);
+        const auto found = std::ranges::find(named, c, &EnteredBox::box);
         const Aabb box = cluster_world_box(model, c, at);
         const double enters = entry(line, box, 0, t_max);
         if (std::isfinite(enters)) {
           ++entered;
-          ASSERT_NE(found, met.end()) << isa << ", line " << i << " enters box " << c;
+          ASSERT_NE(found, named.end()) << isa << ", line " << i << " enters box " << c;
           EXPECT_LE(found->enter, enters + 1e-6) << isa << ", line " << i;
-        } else if (found != met.end()) {
+        } else if (found != named.end()) {
           EXPECT_TRUE(std::isfinite(entry(line, box, 1e-3, t_max + 1e-3)))
               << isa << ", line " << i << " passes box " << c;
         }
@@ -102,7 +102,7 @@ TEST_P(MeetBoxes, FindsEveryBoxThatTheRayEntersAndHardlyAnyOther) {
   EXPECT_GT(entered, 10u);
 }
 
-INSTANTIATE_TEST_SUITE_P(OfAnyNumber, MeetBoxes, testing::ValuesIn(kCounts));
+INSTANTIATE_TEST_SUITE_P(OfAnyNumber, EnterBoxes, testing::ValuesIn(kCounts));
 
 }  // namespace
 }  // namespace mdk

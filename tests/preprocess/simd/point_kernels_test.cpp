@@ -1,5 +1,5 @@
 // The point kernels against plain sums and boxes, and the same bits on every instruction set.
-#include "common/trace/kernels/point_kernels.h"
+#include "preprocess/simd/point_kernels.h"
 
 #include <gtest/gtest.h>
 

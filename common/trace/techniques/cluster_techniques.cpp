@@ -1,0 +1,125 @@
+// Motion decomposition with a hierarchy per cluster: a top level over the clusters' world boxes is
+// made anew every frame, and rays enter each cluster in its own basis. The techniques differ in how
+// the clusters' hierarchies follow the pose.
+#include <limits>
+
+#include "common/base/parallel.h"
+#include "common/structures/top_level.h"
+#include "common/trace/cluster_trees.h"
+#include "common/trace/techniques/structure_technique.h"
+
+namespace mdk {
+namespace {
+
+class ClusterBvhTechnique : public StructureTechnique {
+ public:
+  using StructureTechnique::StructureTechnique;
+
+  void update(const PosedMesh& mesh) final {
+    show(mesh);
+    const ClusterTrees& current = follow(mesh);
+    BvhLevels& levels = structure<BvhLevels>();
+    build_top_level(place_clusters(mesh, levels), top_);
+    levels.top.tree = {top_.nodes, 0};
+    levels.cluster_of_leaf = top_.box_of_leaf;
+    for (std::size_t c = 0; c < levels.clusters.size(); ++c)
+      levels.clusters[c].tree = {current.trees[c].nodes, current.first_leaf[c]};
+    show_blocks(current.blocks);
+  }
+
+ protected:
+  /// Hierarchies that hold the clusters' current triangles, in their bases.
+  virtual const ClusterTrees& follow(const PosedMesh& mesh) = 0;
+  virtual std::size_t cluster_tree_bytes() const = 0;
+
+ private:
+  std::size_t tree_bytes() const final {
+    return top_.bytes() + model().local_from_world.size_bytes() +
+           model().cluster_world_boxes.size_bytes() + cluster_tree_bytes();
+  }
+
+  TopLevel top_;
+};
+
+/// One hierarchy per cluster over its triangles' fuzzy boxes, built once per segment of the time
+/// line and valid at all its times (Lo09 §4.3). Per frame only the clusters move.
+class FuzzyBvhTechnique final : public ClusterBvhTechnique {
+ public:
+  explicit FuzzyBvhTechnique(const Model& model)
+      : ClusterBvhTechnique(model), segments_(model.segment_count()) {}
+
+  void prebuild(const PosedMesh& mesh) override {
+    ClusterTrees& trees = current(mesh);
+    if (!trees.built()) trees = build_cluster_trees(model(), segment_of(model(), mesh.at()));
+  }
+
+ private:
+  const ClusterTrees& follow(const PosedMesh& mesh) override { return current(mesh); }
+  std::size_t cluster_tree_bytes() const override {
+    std::size_t bytes = 0;
+    for (const ClusterTrees& segment : segments_) bytes += segment.bytes();
+    return bytes;
+  }
+  ClusterTrees& current(const PosedMesh& mesh) { return segments_[segment_of(model(), mesh.at())]; }
+
+  std::vector<ClusterTrees> segments_;  ///< built when first shown
+};
+
+/// The triangle's box in a cluster's basis. As triangle_boxes(): a point where a corner is not
+/// finite, since such a triangle cannot be hit.
+Aabb local_box(const Affine3d& local_from_world, const Triangle& triangle, const Vec3f* positions) {
+  constexpr double kMax = std::numeric_limits<float>::max();
+  Aabbd box;
+  bool is_finite = true;
+  for (const std::uint32_t v : triangle.v) {
+    const Vec3d p = local_from_world.point(to_double(positions[v]));
+    is_finite = is_finite && std::abs(p.x) < kMax && std::abs(p.y) < kMax && std::abs(p.z) < kMax;
+    box.extend(p);
+  }
+  return is_finite ? round_outward(box) : Aabb{{0, 0, 0}, {0, 0, 0}};
+}
+
+/// Hierarchies that are refitted to what motion the clusters' maps leave at the moment (Lo09 §4.4):
+/// the topology of fuzzy-bvh, with boxes as tight as the pose allows.
+class DecompRefitTechnique final : public ClusterBvhTechnique {
+ public:
+  explicit DecompRefitTechnique(const Model& model)
+      : ClusterBvhTechnique(model), boxes_(model.triangle_count()) {}
+
+  void prebuild(const PosedMesh&) override {
+    if (!trees_.built())
+      trees_ = build_cluster_trees(model(), segment_of(model(), at_key(model().rest_key)));
+  }
+
+ private:
+  const ClusterTrees& follow(const PosedMesh& mesh) override {
+    const Vec3f* positions = mesh.positions().data();
+    parallel_chunks(trees_.trees.size(), 1, [&](std::size_t c, std::size_t) {
+      const Affine3d map = mesh.cluster_map(static_cast<std::uint32_t>(c));
+      const Cluster& cluster = model().clusters[c];
+      const std::span<Aabb> boxes =
+          std::span(boxes_).subspan(cluster.first_triangle, cluster.triangle_count);
+      for (std::size_t i = 0; i < boxes.size(); ++i)
+        boxes[i] = local_box(map, model().triangles[cluster.first_triangle + i], positions);
+      refit_wide_bvh(trees_.trees[c], boxes);
+    });
+    return trees_;
+  }
+  std::size_t cluster_tree_bytes() const override {
+    return trees_.bytes() + boxes_.size() * sizeof(Aabb);
+  }
+
+  ClusterTrees trees_;
+  std::vector<Aabb> boxes_;  ///< of the current triangles, in their clusters' bases
+};
+
+}  // namespace
+
+std::unique_ptr<Technique> make_fuzzy_bvh(const Model& model) {
+  return std::make_unique<FuzzyBvhTechnique>(model);
+}
+std::unique_ptr<Technique> make_decomp_refit(const Model& model) {
+  return std::make_unique<DecompRefitTechnique>(model);
+}
+
+}  // namespace mdk
