@@ -4,7 +4,7 @@
 
 #include "common/base/error.h"
 #include "formats/assimp_process.h"
-#include "formats/file_kind.h"
+#include "formats/files/file_kind.h"
 #include "formats/gltf_reader.h"
 
 namespace mdk {

@@ -6,7 +6,6 @@
 #include <span>
 #include <tuple>
 
-#include "common/motion/appearance.h"
 #include "common/motion/pose_sequence.h"
 #include "formats/gltf_document.h"
 #include "formats/gltf_geometry.h"

@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "common/base/error.h"
-#include "common/base/printable_text.h"
+#include "common/base/text.h"
 #include "formats/gltf_accessor.h"
 #include "formats/gltf_checks.h"
 #include "formats/gltf_draco.h"

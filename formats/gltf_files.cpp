@@ -8,8 +8,8 @@
 #include <system_error>
 
 #include "common/base/error.h"
-#include "common/base/printable_text.h"
-#include "formats/neighbor_path.h"
+#include "common/base/text.h"
+#include "formats/files/file_kind.h"
 
 namespace mdk::gltf {
 namespace {

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "common/math/vec3.h"
-#include "common/motion/appearance.h"
 #include "common/motion/pose_sequence.h"
 #include "formats/gltf_document.h"
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "common/motion/appearance.h"
+#include "common/motion/pose_sequence.h"
 
 namespace mdk::gltf {
 

@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "common/base/error.h"
-#include "common/base/printable_text.h"
+#include "common/base/text.h"
 
 namespace mdk::gltf {
 

@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "common/motion/rig.h"
-#include "common/motion/skeleton.h"
 #include "formats/gltf_pose.h"
 
 namespace mdk::gltf {

@@ -11,7 +11,7 @@
 #include "formats/obj_reader.h"
 #include "formats/ply_reader.h"
 #include "formats/point_cache_reader.h"
-#include "formats/utf8_text.h"
+#include "formats/files/text.h"
 
 namespace mdk {
 namespace {

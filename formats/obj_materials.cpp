@@ -11,10 +11,10 @@
 #include "common/base/error.h"
 #include "formats/gltf_files.h"
 #include "formats/gltf_image.h"
-#include "formats/mapped_file.h"
-#include "formats/neighbor_path.h"
+#include "formats/files/mapped_file.h"
+#include "formats/files/file_kind.h"
 #include "formats/obj_statements.h"
-#include "formats/text_scan.h"
+#include "formats/files/text.h"
 
 namespace mdk {
 namespace {

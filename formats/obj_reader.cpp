@@ -9,9 +9,9 @@
 #include <utility>
 
 #include "common/base/error.h"
-#include "formats/mapped_file.h"
+#include "formats/files/mapped_file.h"
 #include "formats/obj_statements.h"
-#include "formats/text_scan.h"
+#include "formats/files/text.h"
 
 namespace mdk {
 namespace {

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "common/base/error.h"
-#include "formats/text_scan.h"
+#include "formats/files/text.h"
 
 namespace mdk::ply {
 namespace {

@@ -13,7 +13,7 @@
 
 #include "common/base/error.h"
 #include "common/base/parallel.h"
-#include "formats/mapped_file.h"
+#include "formats/files/mapped_file.h"
 
 namespace mdk {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "common/base/progress.h"
+#include "common/base/parallel.h"
 #include "common/motion/pose_sequence.h"
 
 namespace mdk {

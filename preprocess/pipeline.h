@@ -6,15 +6,13 @@
 #include <string>
 #include <vector>
 
-#include "common/base/progress.h"
+#include "common/base/parallel.h"
 #include "common/motion/model.h"
 #include "common/motion/pose_sequence.h"
 #include "preprocess/decomposition.h"
 #include "preprocess/options.h"
 
 namespace mdk {
-
-using ClusteringStep = GrowthStep;  // the old name
 
 struct DecomposeStats {
   std::uint32_t rest_key = 0;

@@ -6,9 +6,9 @@
 #include "common/base/error.h"
 #include "common/base/isa.h"
 #include "common/base/parallel.h"
-#include "common/base/printable_text.h"
-#include "formats/lost_mappings.h"
-#include "viewer/app.h"
+#include "common/base/text.h"
+#include "formats/files/mapped_file.h"
+#include "viewer/app/app.h"
 #include "viewer/options.h"
 
 int main(int argc, char** argv) {

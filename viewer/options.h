@@ -8,9 +8,7 @@
 
 #include "common/trace/camera.h"
 #include "common/trace/shading.h"
-#include "viewer/state/color_scheme.h"
-#include "viewer/state/compare.h"
-#include "viewer/state/panel_tab.h"
+#include "viewer/state/settings.h"
 
 namespace mdk {
 

@@ -94,8 +94,6 @@ struct DeterminantBounds {
 
   double min() const { return *std::min_element(d, d + 4); }
   double max() const { return *std::max_element(d, d + 4); }
-  double least() const { return min(); }  // to be renamed where it is used
-  double most() const { return max(); }   // likewise
 
  private:
   /// Mean over the three ways of taking one column from `once` and the others from `twice`.

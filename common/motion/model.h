@@ -10,7 +10,6 @@
 
 #include "common/math/aabb.h"
 #include "common/math/affine3.h"
-#include "common/math/quantized_box.h"
 #include "common/motion/arrays.h"
 #include "common/motion/pose_sequence.h"
 #include "common/motion/quantized_poses.h"

@@ -7,7 +7,7 @@
 #include "common/base/error.h"
 #include "common/base/parallel.h"
 #include "common/base/stopwatch.h"
-#include "common/math/affine_path.h"
+#include "common/math/affine3.h"
 
 namespace mdk {
 namespace {

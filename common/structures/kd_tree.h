@@ -104,9 +104,4 @@ std::string validate(const KdTreeView& tree, std::uint32_t ref_begin, std::uint3
 std::string validate(const KdTreeView& tree, std::span<const Aabb> boxes,
                      std::uint32_t ref_base = 0);
 
-/// To be renamed where it is used.
-inline bool is_well_formed(const KdTreeView& tree, std::uint32_t ref_begin, std::uint32_t ref_end) {
-  return validate(tree, ref_begin, ref_end).empty();
-}
-
 }  // namespace mdk

@@ -8,7 +8,7 @@
 #include <span>
 
 #include "common/math/vec3.h"
-#include "common/motion/appearance.h"
+#include "common/motion/pose_sequence.h"
 
 namespace mdk {
 

@@ -14,7 +14,6 @@ namespace mdk {
 
 /// How many samples a pixel may have.
 inline constexpr std::uint32_t kMaxSamples = 4096;
-inline constexpr std::uint32_t kMostSamples = kMaxSamples;  // to be renamed
 
 class Film {
  public:

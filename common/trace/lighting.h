@@ -18,7 +18,6 @@ namespace mdk {
 /// How many occlusion rays a sample may have, and has unless it is told otherwise.
 inline constexpr std::uint32_t kMaxOcclusionRays = 1024;
 inline constexpr std::uint32_t kOcclusionRays = 16;
-inline constexpr std::uint32_t kMostOcclusionRays = kMaxOcclusionRays;  // to be renamed
 
 /// One tile to be lit; the arrays have one value per pixel.
 struct LitTile {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "common/base/parallel.h"
-#include "common/math/affine_path.h"
+#include "common/math/affine3.h"
 #include "common/trace/cluster_trees.h"
 #include "common/trace/query_keys.h"
 

@@ -235,7 +235,7 @@ struct Shader::State {
     return shaded;
   }
 
-  SurfaceWishes requested(ShadingMode mode) const {
+  SurfaceOptions requested(ShadingMode mode) const {
     const bool is_lit = mode == ShadingMode::kLit;
     const bool shows_paint = is_lit || mode == ShadingMode::kDiffuse;
     return {.facing = !is_lit && mode != ShadingMode::kNormals,

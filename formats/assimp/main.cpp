@@ -21,7 +21,7 @@
 #include <new>
 
 #include "common/base/error.h"
-#include "common/base/printable_text.h"
+#include "common/base/text.h"
 #include "formats/assimp/neighbor_files.h"
 #include "formats/assimp/scene_glb.h"
 #include "formats/assimp/scene_import.h"

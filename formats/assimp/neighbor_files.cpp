@@ -10,7 +10,7 @@
 #include "common/base/error.h"
 #include "formats/assimp/scene_import.h"
 #include "formats/gltf_files.h"
-#include "formats/neighbor_path.h"
+#include "formats/files/file_kind.h"
 
 namespace mdk {
 namespace {

@@ -8,7 +8,7 @@
 #include <optional>
 #include <system_error>
 
-#include "formats/neighbor_path.h"
+#include "formats/files/file_kind.h"
 #include "formats/triangle_mesh.h"
 
 namespace mdk {

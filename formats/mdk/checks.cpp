@@ -215,10 +215,9 @@ std::string check_tree_ranges(const Model& m) {
 std::string check_trees(const Model& m) {
   for (std::size_t i = 0; i < m.fuzzy_trees.size(); ++i) {
     const Cluster& c = m.clusters[i % m.clusters.size()];
-    if (!is_well_formed(m.tree_view(m.fuzzy_trees[i]), c.first_triangle,
-                        c.first_triangle + c.triangle_count)) {
-      return "kd_nodes: tree " + number(i) + " is malformed";
-    }
+    const std::string fault = validate(m.tree_view(m.fuzzy_trees[i]), c.first_triangle,
+                                       c.first_triangle + c.triangle_count);
+    if (!fault.empty()) return "kd_nodes: tree " + number(i) + " is malformed: " + fault;
   }
   return {};
 }

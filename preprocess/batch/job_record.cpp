@@ -9,8 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/base/error.h"
-#include "formats/mapped_file.h"
-#include "formats/mdk_sections.h"
+#include "formats/files/mapped_file.h"
 #include "preprocess/tool/text.h"
 
 namespace mdk {

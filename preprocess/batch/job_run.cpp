@@ -15,8 +15,8 @@
 
 #include "common/base/error.h"
 #include "common/base/stopwatch.h"
-#include "formats/atomic_file.h"
-#include "formats/mdk_sections.h"
+#include "formats/files/atomic_file.h"
+#include "formats/files/mapped_file.h"
 #include "preprocess/batch/job_record.h"
 #include "preprocess/tool/memory_limit.h"
 #include "preprocess/tool/files.h"

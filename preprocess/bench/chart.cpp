@@ -6,7 +6,7 @@
 #include <iterator>
 #include <span>
 
-#include "common/base/figure_text.h"
+#include "common/base/text.h"
 
 namespace mdk {
 namespace {

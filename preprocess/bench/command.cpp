@@ -7,7 +7,7 @@
 #include "common/base/error.h"
 #include "common/base/isa.h"
 #include "common/trace/technique.h"
-#include "formats/mdk_view.h"
+#include "formats/mdk/mdk_file.h"
 #include "preprocess/bench/comparison.h"
 #include "preprocess/bench/measurement.h"
 #include "preprocess/bench/report.h"

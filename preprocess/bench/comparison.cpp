@@ -5,7 +5,7 @@
 #include <ostream>
 
 #include "common/base/error.h"
-#include "common/base/figure_text.h"
+#include "common/base/text.h"
 #include "preprocess/bench/report.h"
 
 namespace mdk {

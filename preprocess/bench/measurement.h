@@ -15,7 +15,7 @@
 #include <string>
 #include <vector>
 
-#include "common/base/progress.h"
+#include "common/base/parallel.h"
 #include "common/motion/model.h"
 #include "common/trace/renderer.h"
 #include "preprocess/bench/results.h"

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <array>
 
-#include "common/base/figure_text.h"
+#include "common/base/text.h"
 #include "preprocess/bench/report.h"
 
 namespace mdk {
@@ -75,12 +75,12 @@ Section gfw06_table1(const BenchRun& run) {
 }
 
 /// A figure of the decomposition as a share of what it is with one cluster.
-ChartSeries growth_series(const std::vector<ClusteringStep>& steps, const char* label,
-                          std::size_t style, double ClusteringStep::*figure) {
+ChartSeries growth_series(const std::vector<GrowthStep>& steps, const char* label,
+                          std::size_t style, double GrowthStep::*figure) {
   constexpr double kMinShare = 1e-3;
   ChartSeries series{label, numbered_style(style), {}};
   const double unit = steps.front().*figure;
-  for (const ClusteringStep& step : steps)
+  for (const GrowthStep& step : steps)
     if (unit > 0)
       series.points.push_back(
           {static_cast<double>(step.clusters), std::max(step.*figure / unit, kMinShare)});
@@ -95,10 +95,10 @@ Section gfw06_figure7(const BenchRun& run) {
                 .y_scale = Scale::kLog,
                 .marks = Marks::kDots};
     if (!model.bake || model.bake->growth.size() < 2) return chart;
-    const std::vector<ClusteringStep>& steps = model.bake->growth;
-    chart.series = {growth_series(steps, "residual motion (RMS)", 1, &ClusteringStep::residual_rms),
-                    growth_series(steps, "area of the fuzzy boxes", 0, &ClusteringStep::fuzzy_area),
-                    growth_series(steps, "expected work of a ray", 2, &ClusteringStep::sah_cost)};
+    const std::vector<GrowthStep>& steps = model.bake->growth;
+    chart.series = {growth_series(steps, "residual motion (RMS)", 1, &GrowthStep::residual_rms),
+                    growth_series(steps, "area of the fuzzy boxes", 0, &GrowthStep::fuzzy_area),
+                    growth_series(steps, "expected work of a ray", 2, &GrowthStep::sah_cost)};
     return chart;
   };
   return figure_section(

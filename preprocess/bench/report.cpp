@@ -6,7 +6,7 @@
 #include <cmath>
 #include <map>
 
-#include "common/base/figure_text.h"
+#include "common/base/text.h"
 
 namespace mdk {
 namespace {

@@ -157,7 +157,7 @@ void describe(Fields& io, TechniqueBench& technique) {
   io.field("frames", technique.frames);
 }
 
-void describe(Fields& io, ClusteringStep& step) {
+void describe(Fields& io, GrowthStep& step) {
   io.field("clusters", step.clusters);
   io.field("residual_rms", step.residual_rms);
   io.newer("fuzzy_area", step.fuzzy_area);

@@ -72,7 +72,7 @@ struct BakeFacts {
   double residual_rms = 0, residual_max = 0, sah_cost = 0;
   Seconds seconds;
   std::uint64_t peak_memory_bytes = 0, file_bytes = 0;
-  std::vector<ClusteringStep> growth;
+  std::vector<GrowthStep> growth;
 };
 
 struct ModelBench {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <charconv>
 
-#include "common/base/figure_text.h"
+#include "common/base/text.h"
 #include "preprocess/bench/report.h"
 
 namespace mdk {

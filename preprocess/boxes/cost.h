@@ -17,7 +17,7 @@
 
 #include "common/math/aabb.h"
 #include "common/math/affine3.h"
-#include "common/structures/kd_tree_builder.h"
+#include "common/structures/kd_tree.h"
 
 namespace mdk {
 

@@ -8,7 +8,7 @@
 
 #include "common/base/error.h"
 #include "common/base/parallel.h"
-#include "common/math/affine_path.h"
+#include "common/math/affine3.h"
 
 namespace mdk {
 namespace {
@@ -103,7 +103,7 @@ struct ControlMaps {
     add_scaled(maps.from1[2], cramer_map(x0, x1, o1), 1 / (3 * bounds.d[2]));
     add_scaled(maps.from1[3], cramer_map(x1, x1, o1), 0.5 / bounds.d[3]);
     // The inverse is the adjugate over the determinant; both lie in the hull of their coefficients.
-    const double least = std::min(std::abs(bounds.least()), std::abs(bounds.most()));
+    const double least = std::min(std::abs(bounds.min()), std::abs(bounds.max()));
     for (const Vec3d& o : {o0, o1}) {
       raise_sizes(maps.sizes, cramer_map(x0, x0, o), 0.5 / least);
       raise_sizes(maps.sizes, cramer_map(x0, x1, o), 0.5 / least);

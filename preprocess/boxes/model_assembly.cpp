@@ -10,7 +10,7 @@
 
 #include "common/base/error.h"
 #include "common/base/parallel.h"
-#include "common/structures/kd_tree_builder.h"
+#include "common/structures/kd_tree.h"
 #include "preprocess/boxes/cost.h"
 #include "preprocess/boxes/fuzzy_boxes.h"
 #include "preprocess/pose/pose_table.h"

@@ -1,7 +1,7 @@
 // From the decomposition's parts to the model: triangles sorted by cluster, boxes, fuzzy kd-trees.
 #pragma once
 
-#include "common/base/progress.h"
+#include "common/base/parallel.h"
 #include "common/motion/model.h"
 #include "common/motion/pose_sequence.h"
 #include "preprocess/decomposition.h"

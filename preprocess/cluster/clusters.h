@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "common/base/progress.h"
+#include "common/base/parallel.h"
 #include "common/math/affine3.h"
 #include "common/motion/pose_sequence.h"
 #include "preprocess/decomposition.h"

@@ -6,9 +6,9 @@
 #include <nlohmann/json.hpp>
 
 #include "common/base/error.h"
-#include "common/base/printable_text.h"
+#include "common/base/text.h"
 #include "common/base/stopwatch.h"
-#include "formats/mdk_writer.h"
+#include "formats/mdk/writer.h"
 #include "preprocess/commands/command_line.h"
 #include "preprocess/commands/source.h"
 #include "preprocess/pipeline.h"
@@ -91,7 +91,7 @@ std::string bake_report_json(const Model& model, const DecomposeStats& stats,
   const Json read_through =
       outcome.read_through.empty() ? Json(nullptr) : Json(outcome.read_through);
   Json growth = Json::array();
-  for (const ClusteringStep& step : stats.steps)
+  for (const GrowthStep& step : stats.steps)
     growth.push_back({{"clusters", step.clusters},
                       {"residual_rms", step.residual_rms},
                       {"fuzzy_area", step.fuzzy_area},
@@ -169,8 +169,8 @@ void print_notes(const BakeArguments& arguments, const std::vector<std::string>&
   }
 }
 
-void print_steps(const std::vector<ClusteringStep>& steps) {
-  for (const ClusteringStep& step : steps)
+void print_steps(const std::vector<GrowthStep>& steps) {
+  for (const GrowthStep& step : steps)
     std::cerr << "mdprep: " << step.clusters << " clusters: residual "
               << fixed_text(step.residual_rms * 100, 4) << " % rms, cost "
               << fixed_text(step.sah_cost, 2) << "\n";

@@ -5,7 +5,7 @@
 #include <random>
 
 #include "common/base/parallel.h"
-#include "common/math/affine_path.h"
+#include "common/math/affine3.h"
 #include "common/motion/posed_mesh.h"
 #include "common/trace/renderer.h"
 #include "preprocess/tool/shared_options.h"

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "common/base/progress.h"
+#include "common/base/parallel.h"
 #include "common/motion/model.h"
 #include "common/motion/pose_sequence.h"
 

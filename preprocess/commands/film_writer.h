@@ -7,7 +7,7 @@
 #include <span>
 #include <string>
 
-#include "formats/atomic_file.h"
+#include "formats/files/atomic_file.h"
 #include "preprocess/tool/shared_options.h"
 
 namespace mdk {

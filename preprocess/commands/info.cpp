@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "common/base/parallel.h"
-#include "common/base/printable_text.h"
-#include "formats/mdk_view.h"
+#include "common/base/text.h"
+#include "formats/mdk/mdk_file.h"
 #include "preprocess/commands/command_line.h"
-#include "preprocess/cost.h"
+#include "preprocess/boxes/cost.h"
 #include "preprocess/tool/measures.h"
 #include "preprocess/tool/shared_options.h"
 #include "preprocess/tool/text.h"

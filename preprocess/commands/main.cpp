@@ -5,7 +5,7 @@
 #include <iostream>
 
 #include "common/base/error.h"
-#include "formats/lost_mappings.h"
+#include "formats/files/mapped_file.h"
 #include "preprocess/commands/command_line.h"
 
 namespace mdk {

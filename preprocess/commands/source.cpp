@@ -6,10 +6,10 @@
 
 #include "common/base/error.h"
 #include "formats/assimp_reader.h"
-#include "formats/file_kind.h"
+#include "formats/files/file_kind.h"
 #include "formats/gltf_reader.h"
 #include "formats/mesh_sequence_reader.h"
-#include "preprocess/stage_shares.h"
+#include "preprocess/pipeline.h"
 #include "preprocess/tool/text.h"
 
 namespace mdk {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "common/base/progress.h"
+#include "common/base/parallel.h"
 #include "formats/numbered_files.h"
 #include "formats/reading.h"
 #include "preprocess/pipeline.h"

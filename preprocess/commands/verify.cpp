@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "common/base/error.h"
-#include "formats/mdk_view.h"
+#include "formats/mdk/mdk_file.h"
 #include "preprocess/commands/checks.h"
 #include "preprocess/commands/command_line.h"
 #include "preprocess/commands/source.h"

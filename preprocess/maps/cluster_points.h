@@ -11,7 +11,7 @@
 #include "common/math/aabb.h"
 #include "common/math/affine3.h"
 #include "common/math/vec3.h"
-#include "common/trace/kernels/point_kernels.h"
+#include "preprocess/simd/point_kernels.h"
 #include "preprocess/boxes/cost.h"
 #include "preprocess/decomposition.h"
 #include "preprocess/pose/pose_table.h"

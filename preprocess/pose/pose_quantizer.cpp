@@ -14,7 +14,7 @@
 namespace mdk {
 namespace {
 
-constexpr double kMaxSteps = (1u << kMostCoordinateBits) - 1;
+constexpr double kMaxSteps = (1u << kMaxCoordinateBits) - 1;
 
 /// What one round of quantisation tries.
 struct Target {

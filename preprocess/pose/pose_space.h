@@ -22,7 +22,6 @@
 #include "common/math/aabb.h"
 #include "common/math/affine3.h"
 #include "common/motion/rig.h"
-#include "common/motion/skeleton.h"
 
 namespace mdk {
 

@@ -17,7 +17,7 @@
 #include "common/math/affine3.h"
 #include "common/math/vec3.h"
 #include "common/motion/pose_sequence.h"
-#include "common/trace/kernels/point_kernels.h"
+#include "preprocess/simd/point_kernels.h"
 #include "preprocess/decomposition.h"
 
 namespace mdk {

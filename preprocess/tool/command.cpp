@@ -7,7 +7,7 @@
 #include <span>
 
 #include "common/base/error.h"
-#include "formats/mdk_sections.h"
+#include "formats/files/mapped_file.h"
 #include "preprocess/tool/text.h"
 
 namespace mdk {

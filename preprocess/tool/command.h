@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "formats/atomic_file.h"
+#include "formats/files/atomic_file.h"
 #include "preprocess/tool/failure.h"
 
 namespace mdk {

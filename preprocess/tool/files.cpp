@@ -6,8 +6,8 @@
 #include <system_error>
 
 #include "common/base/error.h"
-#include "formats/atomic_file.h"
-#include "formats/mapped_file.h"
+#include "formats/files/atomic_file.h"
+#include "formats/files/mapped_file.h"
 
 namespace mdk {
 namespace {

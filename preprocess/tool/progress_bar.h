@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include "common/base/progress.h"
+#include "common/base/parallel.h"
 #include "common/base/stopwatch.h"
 
 namespace mdk {

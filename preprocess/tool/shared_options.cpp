@@ -13,8 +13,8 @@ namespace mdk {
 namespace {
 
 constexpr CountRange kThreadRange{1, 1024};
-constexpr CountRange kSampleRange{1, kMostSamples};
-constexpr CountRange kOcclusionRange{0, kMostOcclusionRays};
+constexpr CountRange kSampleRange{1, kMaxSamples};
+constexpr CountRange kOcclusionRange{0, kMaxOcclusionRays};
 
 std::string shading_ids() {
   std::string ids;

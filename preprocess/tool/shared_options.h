@@ -71,7 +71,7 @@ ImageSize parse_image_size(std::string_view text);
 /// Throws Error (kUsage).
 Camera parse_camera(std::string_view text);
 
-/// 1 to kMostSamples, and 0 to kMostOcclusionRays. Throw Error (kUsage).
+/// 1 to kMaxSamples, and 0 to kMaxOcclusionRays. Throw Error (kUsage).
 std::uint32_t parse_samples(std::string_view text);
 std::uint32_t parse_occlusion_rays(std::string_view text);
 

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "common/base/error.h"
-#include "common/base/figure_text.h"
+#include "common/base/text.h"
 
 namespace mdk {
 

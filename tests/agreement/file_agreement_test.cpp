@@ -9,7 +9,7 @@
 #include <string>
 
 #include "common/trace/renderer.h"
-#include "formats/mdk_view.h"
+#include "formats/mdk/mdk_file.h"
 
 namespace mdk {
 namespace {

@@ -12,7 +12,7 @@
 
 #include "common/base/isa.h"
 #include "common/trace/renderer.h"
-#include "formats/mdk_view.h"
+#include "formats/mdk/mdk_file.h"
 #include "preprocess/pipeline.h"
 #include "tests/agreement/test_scenes.h"
 

@@ -9,7 +9,7 @@
 #include <numbers>
 
 #include "assets/ball_motion.h"
-#include "common/base/progress.h"
+#include "common/base/parallel.h"
 #include "common/math/aabb.h"
 #include "formats/gltf_reader.h"
 #include "tests/assets/glb_content.h"

@@ -9,7 +9,7 @@
 #include <set>
 #include <string>
 
-#include "common/base/progress.h"
+#include "common/base/parallel.h"
 #include "formats/gltf_reader.h"
 #include "tests/assets/glb_content.h"
 #include "tests/assets/mesh_topology.h"

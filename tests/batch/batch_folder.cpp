@@ -9,7 +9,7 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
-#include "formats/image_writer.h"
+#include "formats/files/image_writer.h"
 #include "preprocess/batch/plan.h"
 #include "preprocess/commands/command_line.h"
 

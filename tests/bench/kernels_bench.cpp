@@ -10,7 +10,7 @@
 
 #include "common/base/parallel.h"
 #include "common/motion/posed_mesh.h"
-#include "common/structures/kd_tree_builder.h"
+#include "common/structures/kd_tree.h"
 #include "common/structures/wide_bvh.h"
 #include "common/trace/cluster_trees.h"
 #include "common/trace/kernels/tile_kernels.h"

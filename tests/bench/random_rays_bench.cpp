@@ -18,7 +18,7 @@
 
 #include "common/motion/posed_mesh.h"
 #include "common/trace/ray_query.h"
-#include "formats/mdk_view.h"
+#include "formats/mdk/mdk_file.h"
 
 namespace {
 

@@ -8,7 +8,7 @@
 #include <thread>
 
 #include "common/base/isa.h"
-#include "formats/file_kind.h"
+#include "formats/files/file_kind.h"
 #include "tests/commands/baked_sample.h"
 #include "tests/commands/program_run.h"
 #include "tests/commands/sample_mesh.h"

@@ -7,8 +7,8 @@
 #include <random>
 #include <string>
 
-#include "formats/mdk_view.h"
-#include "formats/mdk_writer.h"
+#include "formats/mdk/mdk_file.h"
+#include "formats/mdk/writer.h"
 #include "preprocess/commands/checks.h"
 #include "preprocess/pipeline.h"
 #include "tests/formats/temp_folder.h"

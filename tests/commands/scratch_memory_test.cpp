@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "tests/cli/program_run.h"
+#include "tests/commands/program_run.h"
 #include "tests/formats/point_cache_builder.h"
 #include "tests/formats/temp_folder.h"
 

@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/trace/technique.h"
-#include "formats/mdk_writer.h"
+#include "formats/mdk/writer.h"
 #include "tests/commands/baked_sample.h"
 #include "tests/commands/program_run.h"
 #include "tests/commands/sample_model.h"

@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "common/base/parallel.h"
-#include "common/motion/pose_sequence.h"
 #include "tests/common/random_rig.h"
 
 namespace mdk {

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "common/base/isa.h"
-#include "common/structures/kd_tree_builder.h"
+#include "common/structures/kd_tree.h"
 #include "common/trace/cluster_trees.h"
 
 namespace mdk {

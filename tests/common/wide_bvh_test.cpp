@@ -8,7 +8,6 @@
 #include <functional>
 
 #include "common/base/parallel.h"
-#include "common/structures/wide_bvh.h"
 #include "tests/common/random_boxes.h"
 
 namespace mdk {

@@ -7,8 +7,8 @@
 #include <numbers>
 #include <random>
 
-#include "formats/file_kind.h"
-#include "formats/image_writer.h"
+#include "formats/files/file_kind.h"
+#include "formats/files/image_writer.h"
 #include "tests/formats/assimp_samples.h"
 #include "tests/formats/expect_error.h"
 #include "tests/formats/temp_folder.h"

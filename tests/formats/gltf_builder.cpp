@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "common/base/progress.h"
+#include "common/base/parallel.h"
 
 namespace mdk::test {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "common/base/error.h"
-#include "formats/image_writer.h"
+#include "formats/files/image_writer.h"
 #include "formats/mesh_sequence_reader.h"
 #include "tests/formats/temp_folder.h"
 

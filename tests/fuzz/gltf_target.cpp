@@ -2,7 +2,7 @@
 #include <numeric>
 
 #include "formats/gltf_reader.h"
-#include "formats/image_writer.h"
+#include "formats/files/image_writer.h"
 #include "tests/formats/compressed_gltf.h"
 #include "tests/formats/gltf_builder.h"
 #include "tests/fuzz/fuzz_target.h"

@@ -5,7 +5,7 @@
 #include <stdexcept>
 
 #include "formats/gltf_image.h"
-#include "formats/image_writer.h"
+#include "formats/files/image_writer.h"
 #include "tests/fuzz/fuzz_target.h"
 
 namespace mdk::test {

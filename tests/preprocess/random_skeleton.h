@@ -5,7 +5,7 @@
 #include <random>
 
 #include "common/motion/pose_sequence.h"
-#include "common/motion/skeleton.h"
+#include "common/motion/rig.h"
 
 namespace mdk {
 

@@ -4,7 +4,7 @@
 #include <numeric>
 #include <set>
 
-#include "formats/mdk_writer.h"
+#include "formats/mdk/writer.h"
 #include "tests/formats/temp_folder.h"
 #include "tests/viewer/waving_bar.h"
 #include "viewer/picture/requests.h"

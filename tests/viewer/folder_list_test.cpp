@@ -6,7 +6,7 @@
 #include <fstream>
 
 #include "common/base/error.h"
-#include "formats/file_kind.h"
+#include "formats/files/file_kind.h"
 #include "tests/formats/temp_folder.h"
 #include "viewer/scene/file_list.h"
 

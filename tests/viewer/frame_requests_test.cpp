@@ -9,7 +9,7 @@
 #include <thread>
 
 #include "common/trace/technique.h"
-#include "formats/mdk_writer.h"
+#include "formats/mdk/writer.h"
 #include "tests/viewer/waving_bar.h"
 #include "viewer/picture/render_worker.h"
 #include "viewer/picture/requests.h"

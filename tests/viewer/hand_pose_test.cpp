@@ -5,7 +5,7 @@
 
 #include "common/trace/renderer.h"
 #include "common/trace/technique.h"
-#include "formats/mdk_writer.h"
+#include "formats/mdk/writer.h"
 #include "tests/formats/mdk/sample_model.h"
 #include "tests/formats/temp_folder.h"
 #include "viewer/picture/requests.h"

@@ -4,7 +4,7 @@
 
 #include <filesystem>
 
-#include "formats/mdk_writer.h"
+#include "formats/mdk/writer.h"
 #include "tests/viewer/mdview_gui.h"
 #include "tests/viewer/mdview_title.h"
 #include "tests/viewer/obj_sources.h"

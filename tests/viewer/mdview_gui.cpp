@@ -6,7 +6,7 @@
 #include <fstream>
 #include <set>
 
-#include "formats/mdk_writer.h"
+#include "formats/mdk/writer.h"
 #include "tests/viewer/waving_bar.h"
 
 namespace mdk::test {

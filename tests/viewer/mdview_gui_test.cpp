@@ -10,7 +10,7 @@
 #include <filesystem>
 
 #include "common/trace/technique.h"
-#include "formats/mdk_writer.h"
+#include "formats/mdk/writer.h"
 #include "tests/formats/temp_folder.h"
 #include "tests/viewer/waving_bar.h"
 #include "tests/viewer/x_drop.h"

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "common/trace/renderer.h"
-#include "formats/mdk_view.h"
+#include "formats/mdk/mdk_file.h"
 #include "tests/viewer/mdview_gui.h"
 #include "viewer/state/clusters.h"
 

@@ -9,7 +9,7 @@
 #include "common/motion/model.h"
 #include "common/trace/renderer.h"
 #include "common/trace/shading.h"
-#include "formats/mdk_view.h"
+#include "formats/mdk/mdk_file.h"
 #include "tests/viewer/mdview_gui.h"
 
 namespace mdk::test {

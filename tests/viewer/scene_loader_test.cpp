@@ -11,7 +11,7 @@
 #include <string>
 #include <thread>
 
-#include "formats/mdk_writer.h"
+#include "formats/mdk/writer.h"
 #include "tests/formats/temp_folder.h"
 #include "tests/viewer/obj_sources.h"
 #include "tests/viewer/waving_bar.h"

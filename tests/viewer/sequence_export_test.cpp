@@ -5,7 +5,7 @@
 #include <chrono>
 #include <filesystem>
 
-#include "formats/mdk_writer.h"
+#include "formats/mdk/writer.h"
 #include "tests/formats/temp_folder.h"
 #include "tests/viewer/waving_bar.h"
 #include "viewer/picture/export.h"

@@ -5,7 +5,7 @@
 #include <numeric>
 
 #include "common/trace/renderer.h"
-#include "common/trace/residuals.h"
+#include "common/trace/heat_map.h"
 #include "tests/viewer/waving_bar.h"
 #include "viewer/state/camera.h"
 #include "viewer/state/clusters.h"

@@ -2,7 +2,7 @@
 #include <filesystem>
 
 #include "common/trace/technique.h"
-#include "formats/image_writer.h"
+#include "formats/files/image_writer.h"
 #include "viewer/app/app.h"
 
 namespace mdk {

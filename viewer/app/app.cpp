@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "common/trace/color.h"
-#include "formats/image_writer.h"
+#include "formats/files/image_writer.h"
 #include "viewer/app/state_report.h"
 
 namespace mdk {

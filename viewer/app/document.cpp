@@ -3,7 +3,7 @@
 #include <filesystem>
 
 #include "common/base/error.h"
-#include "formats/atomic_file.h"
+#include "formats/files/atomic_file.h"
 
 namespace mdk {
 namespace {

@@ -10,7 +10,7 @@
 
 #include "common/base/error.h"
 #include "common/trace/technique.h"
-#include "formats/atomic_file.h"
+#include "formats/files/atomic_file.h"
 
 namespace mdk {
 namespace {

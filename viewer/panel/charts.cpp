@@ -8,7 +8,7 @@
 #include <span>
 #include <string>
 
-#include "common/base/figure_text.h"
+#include "common/base/text.h"
 #include "common/trace/color.h"
 #include "common/trace/technique.h"
 #include "viewer/panel/widgets.h"

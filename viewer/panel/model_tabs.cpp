@@ -5,10 +5,10 @@
 #include <numeric>
 #include <string>
 
-#include "common/base/figure_text.h"
+#include "common/base/text.h"
 #include "common/trace/color.h"
 #include "common/trace/shading.h"
-#include "formats/file_kind.h"
+#include "formats/files/file_kind.h"
 #include "viewer/panel/tabs.h"
 #include "viewer/panel/widgets.h"
 

@@ -7,7 +7,7 @@
 #include <numbers>
 #include <string>
 
-#include "formats/file_kind.h"
+#include "formats/files/file_kind.h"
 #include "viewer/panel/panel.h"
 #include "viewer/panel/widgets.h"
 

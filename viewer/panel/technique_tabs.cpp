@@ -3,7 +3,7 @@
 #include <array>
 #include <string>
 
-#include "common/base/figure_text.h"
+#include "common/base/text.h"
 #include "common/trace/technique.h"
 #include "viewer/panel/charts.h"
 #include "viewer/panel/panel.h"

@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "common/base/figure_text.h"
+#include "common/base/text.h"
 
 namespace mdk {
 

@@ -13,7 +13,7 @@
 
 #include "common/base/error.h"
 #include "common/trace/technique.h"
-#include "formats/atomic_file.h"
+#include "formats/files/atomic_file.h"
 
 namespace mdk {
 namespace {

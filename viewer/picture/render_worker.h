@@ -15,7 +15,7 @@
 
 #include "common/base/stopwatch.h"
 #include "common/trace/renderer.h"
-#include "formats/mdk_view.h"
+#include "formats/mdk/mdk_file.h"
 #include "viewer/state/clusters.h"
 #include "viewer/state/costs.h"
 

@@ -6,7 +6,7 @@
 #include <iterator>
 
 #include "common/base/error.h"
-#include "formats/file_kind.h"
+#include "formats/files/file_kind.h"
 
 namespace mdk {
 namespace {

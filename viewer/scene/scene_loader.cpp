@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "formats/file_kind.h"
+#include "formats/files/file_kind.h"
 
 namespace mdk {
 namespace {

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "common/base/error.h"
-#include "formats/mdk_view.h"
+#include "formats/mdk/mdk_file.h"
 #include "viewer/scene/mdprep_task.h"
 
 namespace mdk {

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "common/motion/posed_mesh.h"
-#include "common/structures/kd_tree_builder.h"
-#include "common/trace/residuals.h"
+#include "common/structures/kd_tree.h"
+#include "common/trace/heat_map.h"
 
 namespace mdk {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "common/math/affine_path.h"
+#include "common/math/affine3.h"
 
 namespace mdk {
 

@@ -10,7 +10,7 @@
 
 #include "common/motion/model.h"
 #include "common/motion/posed_mesh.h"
-#include "common/motion/skeleton.h"
+#include "common/motion/rig.h"
 
 namespace mdk {
 

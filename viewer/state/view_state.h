@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "formats/mdk_view.h"
+#include "formats/mdk/mdk_file.h"
 #include "viewer/scene/file_list.h"
 #include "viewer/scene/scene_loader.h"
 #include "viewer/state/camera.h"

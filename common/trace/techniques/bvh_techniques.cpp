@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cassert>
 
-#include "common/structures/temporal_bvh.h"
+#include "common/structures/bvh.h"
 #include "common/trace/cluster_trees.h"
 #include "common/trace/techniques/structure_technique.h"
 

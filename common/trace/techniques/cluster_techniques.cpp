@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "common/base/parallel.h"
-#include "common/structures/top_level.h"
+#include "common/structures/wide_bvh.h"
 #include "common/trace/cluster_trees.h"
 #include "common/trace/techniques/structure_technique.h"
 

@@ -2,7 +2,7 @@
 #include <map>
 #include <tuple>
 
-#include "common/structures/kd_tree_builder.h"
+#include "common/structures/kd_tree.h"
 #include "common/trace/techniques/structure_technique.h"
 
 namespace mdk {

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "common/base/parallel.h"
-#include "common/trace/kernels/point_kernels.h"
+#include "preprocess/simd/point_kernels.h"
 
 namespace mdk {
 namespace {

@@ -6,7 +6,6 @@
 #include <filesystem>
 #include <string>
 
-#include "formats/files/mapped_file.h"
 #include "tests/formats/temp_folder.h"
 
 namespace mdk::test {

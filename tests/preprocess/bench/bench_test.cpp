@@ -6,11 +6,11 @@
 #include <sstream>
 
 #include "common/trace/technique.h"
-#include "formats/mdk_writer.h"
-#include "tests/cli/baked_sample.h"
-#include "tests/cli/program_run.h"
-#include "tests/cli/sample_mesh.h"
-#include "tests/cli/sample_model.h"
+#include "formats/mdk/writer.h"
+#include "tests/commands/baked_sample.h"
+#include "tests/commands/program_run.h"
+#include "tests/commands/sample_mesh.h"
+#include "tests/commands/sample_model.h"
 
 namespace mdk::test {
 namespace {

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "common/base/error.h"
-#include "preprocess/cli/median.h"
+#include "preprocess/tool/measures.h"
 #include "tests/formats/expect_error.h"
 #include "tests/preprocess/bench/made_up_results.h"
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <random>
 
-#include "common/math/affine_path.h"
+#include "common/math/affine3.h"
 #include "common/motion/model.h"
 #include "common/motion/posed_mesh.h"
 #include "preprocess/pipeline.h"

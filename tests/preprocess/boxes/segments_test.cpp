@@ -13,7 +13,7 @@
 #include <random>
 
 #include "common/base/parallel.h"
-#include "common/math/affine_path.h"
+#include "common/math/affine3.h"
 #include "common/motion/posed_mesh.h"
 #include "preprocess/pipeline.h"
 #include "tests/preprocess/moving_meshes.h"

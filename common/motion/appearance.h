@@ -1,3 +1,0 @@
-// Moved.
-#pragma once
-#include "common/motion/pose_sequence.h"

@@ -1,3 +1,0 @@
-// Moved.
-#pragma once
-#include "common/motion/posed_mesh.h"

@@ -1,4 +1,0 @@
-// Moved.
-#pragma once
-
-#include "common/structures/bvh.h"

@@ -1,4 +1,0 @@
-// Moved.
-#pragma once
-
-#include "common/trace/heat_map.h"

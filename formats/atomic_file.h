@@ -1,3 +1,0 @@
-// Moved.
-#pragma once
-#include "formats/files/atomic_file.h"

@@ -1,3 +1,0 @@
-// Moved.
-#pragma once
-#include "formats/mdk/mdk_file.h"

@@ -1,4 +1,0 @@
-// Moved.
-#pragma once
-#include "formats/mdk/layout.h"
-#include "formats/files/mapped_file.h"

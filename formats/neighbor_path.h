@@ -1,3 +1,0 @@
-// Moved.
-#pragma once
-#include "formats/files/file_kind.h"

@@ -1,3 +1,0 @@
-// Forwards to its new place.
-#pragma once
-#include "preprocess/boxes/cost.h"

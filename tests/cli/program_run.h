@@ -1,4 +1,0 @@
-// Moved.
-#pragma once
-
-#include "tests/commands/program_run.h"

@@ -1,4 +1,0 @@
-// Moved.
-#pragma once
-
-#include "viewer/app/app.h"  // IWYU pragma: export

@@ -1,4 +1,0 @@
-// Moved.
-#pragma once
-
-#include "viewer/state/settings.h"  // IWYU pragma: export
