@@ -118,6 +118,27 @@ TEST_F(MdviewGui, AFileThatIsOverwrittenByGarbageStaysOpenAndThatIsSaid) {
   EXPECT_GT(state["last_frame"]["hits"], 500);
 }
 
+TEST_F(MdviewGui, AFileThatComesLaterIsOpenedAsItWasAskedFor) {
+  const std::vector<std::string> words = {"--size", "800x600", "--time", "0.3"};
+  const auto opened = [&](const char* name) {
+    std::vector<std::string> all = words;
+    all.insert(all.begin(), name);
+    return start(all);
+  };
+  const auto session = opened("late.mdk");
+  session->wait_for_window();
+  write_mdk(waving_bar().view(), folder_.file("late.mdk"));
+  wait_for_file(*session, "late.mdk");
+  const json state = session->quit().state;
+  EXPECT_EQ(state["file"], "late.mdk");
+  EXPECT_EQ(state["time"], 0.3);
+  EXPECT_TRUE(state["error"].is_null()) << state["error"];
+  EXPECT_TRUE(state["notice"].is_null()) << state["notice"];
+  const auto at_once = opened("bar.mdk");
+  at_once->wait_for_window();
+  EXPECT_EQ(state["camera"], at_once->quit().state["camera"]);
+}
+
 TEST_F(MdviewGui, WhatWasBakedIsKeptBesideItsSource) {
   write_text("square.obj", kSquare);
   const std::vector<std::string> words = {"square.obj", "--size", "1280x800", "--tab", "file"};

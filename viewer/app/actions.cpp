@@ -21,95 +21,67 @@ void App::execute(const Action& action) {
   Playback& playback = state_.playback;
   switch (action.command) {
     case Command::kPlayPause:
-      playback.toggle();
-      break;
+      return playback.toggle();
     case Command::kPreviousKey:
-      playback.step_key(StepDirection::kBack);
-      break;
+      return playback.step_key(StepDirection::kBack);
     case Command::kNextKey:
-      playback.step_key(StepDirection::kForward);
-      break;
+      return playback.step_key(StepDirection::kForward);
     case Command::kStart:
-      playback.go_to_start();
-      break;
+      return playback.go_to_start();
     case Command::kEnd:
-      playback.go_to_end();
-      break;
+      return playback.go_to_end();
     case Command::kPreviousTechnique:
-      state_.settings.step_technique(-1);
-      break;
+      return state_.settings.step_technique(-1);
     case Command::kNextTechnique:
-      state_.settings.step_technique(+1);
-      break;
+      return state_.settings.step_technique(+1);
     case Command::kTechniqueByNumber:
       if (action.number < technique_table().size()) state_.settings.technique = action.number;
       break;
     case Command::kNextShading:
-      state_.settings.next_shading();
-      break;
+      return state_.settings.next_shading();
     case Command::kNextCompare:
       state_.compare.mode = next_compare_mode(state_.compare.mode);
       break;
     case Command::kShowAll:
-      state_.clusters.show_all();
-      break;
+      return state_.clusters.show_all();
     case Command::kFit:
       if (state_.file) state_.camera.fit(state_.file->model().bounds, picture_aspect());
       break;
     case Command::kResetView:
-      reset_view();
-      break;
+      return reset_view();
     case Command::kSavePicture:
-      if (shown_.picture().pixels.empty())
-        show_notice("There is no picture to save yet");
-      else
-        save(shown_.picture());
-      break;
+      return save_picture();
     case Command::kSaveWindow:
       save_window_ = true;
       break;
     case Command::kCopyCommand:
-      copy_render_command();
-      break;
+      return copy_render_command();
     case Command::kExport:
-      export_sequence();
-      break;
+      return export_sequence();
     case Command::kCancelExport:
-      export_.cancel();
-      break;
+      return export_.cancel();
     case Command::kToggleFileMenu:
-      if (state_.file_menu)
-        state_.file_menu.reset();
-      else
-        state_.file_menu = FileMenu{"Open", state_.recent_files, ""};
-      break;
+      return toggle_file_menu();
     case Command::kKeepBaked:
       if (state_.file) show_outcome([this] { return document_.keep_baked(); });
       break;
     case Command::kCancelBake:
-      document_.cancel();
-      break;
+      return document_.cancel();
     case Command::kBeginRange:
-      playback.begin_range_here();
-      break;
+      return playback.begin_range_here();
     case Command::kEndRange:
-      playback.end_range_here();
-      break;
+      return playback.end_range_here();
     case Command::kClearRange:
-      playback.clear_range();
-      break;
+      return playback.clear_range();
     case Command::kToggleTurntable:
       state_.turntable = !state_.turntable;
       break;
     case Command::kToggleColors:
-      state_.settings.toggle_colors();
-      break;
+      return state_.settings.toggle_colors();
     case Command::kLargerText:
-      state_.settings.step_text_size(+1);
-      break;
+      return state_.settings.step_text_size(+1);
     case Command::kSmallerText:
-      state_.settings.step_text_size(-1);
-      break;
+      return state_.settings.step_text_size(-1);
     case Command::kTogglePanel:
       state_.panel = state_.panel == PanelMode::kShown ? PanelMode::kHidden : PanelMode::kShown;
       break;
@@ -117,12 +89,18 @@ void App::execute(const Action& action) {
       state_.help_open = !state_.help_open;
       break;
     case Command::kDismiss:
-      dismiss();
-      break;
+      return dismiss();
     case Command::kQuit:
       quit_ = true;
       break;
   }
+}
+
+void App::toggle_file_menu() {
+  if (state_.file_menu)
+    state_.file_menu.reset();
+  else
+    state_.file_menu = FileMenu{"Open", state_.recent_files, ""};
 }
 
 void App::dismiss() {
@@ -197,6 +175,13 @@ void App::show_export() {
     show_error(*result->error);
   else
     show_notice(result->sentence);
+}
+
+void App::save_picture() {
+  if (shown_.picture().pixels.empty())
+    show_notice("There is no picture to save yet");
+  else
+    save(shown_.picture());
 }
 
 void App::save(const Picture& picture) {

@@ -55,12 +55,14 @@ class App {
   void handle_events();
   void execute(const Action& action);
   void dismiss();
+  void toggle_file_menu();
   void open(const std::vector<std::string>& paths);
   void reset_view();
   void export_sequence();
   void show_export();
   std::string render_command_of_picture() const;  // empty without a file
   void copy_render_command();
+  void save_picture();
   void save(const Picture& picture);
   Picture window_picture() const;
 

@@ -1,7 +1,6 @@
 #include "viewer/app/session.h"
 
 #include <algorithm>
-#include <array>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -46,16 +45,11 @@ Json session_json(const SavedSession& session) {
 /// The value under `name` if it is there and of this kind.
 template <class Value>
 std::optional<Value> value_of(const Json& json, const char* name) {
-  const auto at = json.find(name);
-  if (at == json.end()) return {};
-  if constexpr (std::is_same_v<Value, bool>) {
-    if (!at->is_boolean()) return {};
-  } else if constexpr (std::is_same_v<Value, std::string>) {
-    if (!at->is_string()) return {};
-  } else {
-    if (!at->is_number()) return {};
+  try {
+    return json.at(name).get<Value>();
+  } catch (const Json::exception&) {
+    return {};
   }
-  return at->get<Value>();
 }
 
 /// An enumeration that counts from 0 to `last`.
@@ -67,16 +61,12 @@ void read_choice(const Json& json, const char* name, Enum last, Enum& into) {
 }
 
 std::optional<WindowSize> read_window(const Json& json) {
-  const auto at = json.find("window");
-  if (at == json.end() || !at->is_array() || at->size() != 2) return {};
-  std::array<std::uint32_t, 2> side{};
-  for (std::size_t i = 0; i < 2; ++i) {
-    if (!(*at)[i].is_number()) return {};
-    const auto length = (*at)[i].get<double>();
-    if (!(length >= kMinWindowSide && length <= kMaxImageSide)) return {};
-    side[i] = static_cast<std::uint32_t>(length);
-  }
-  return WindowSize{side[0], side[1]};
+  const auto sides = value_of<std::vector<double>>(json, "window");
+  if (!sides || sides->size() != 2) return {};
+  for (const double side : *sides)
+    if (!(side >= kMinWindowSide && side <= kMaxImageSide)) return {};
+  return WindowSize{static_cast<std::uint32_t>((*sides)[0]),
+                    static_cast<std::uint32_t>((*sides)[1])};
 }
 
 std::vector<FileChoice> read_recent(const Json& json) {
