@@ -69,8 +69,11 @@ PlannedFrame frame_at_time(const Model& model, std::uint32_t clip, double second
 std::vector<PlannedFrame> plan_frames(const RenderArguments& arguments, const Model& model) {
   std::vector<PlannedFrame> frames;
   if (arguments.frames) {
+    const KeyRange& range = *arguments.frames;
+    const std::string option =
+        "--frames " + std::to_string(range.first) + ":" + std::to_string(range.last);
     const std::vector<std::uint32_t> keys =
-        with_name("--frames", [&] { return arguments.frames->keys(model.key_count()); });
+        with_name(option, [&] { return range.keys(model.key_count()); });
     for (const std::uint32_t key : keys) frames.push_back(frame_at_key(model, key));
     return frames;
   }

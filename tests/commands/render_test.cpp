@@ -182,8 +182,8 @@ class RenderWithTalkativeFfmpeg : public Render {
                    end_of_script);
     std::filesystem::permissions(bin.file("ffmpeg"), std::filesystem::perms::owner_all);
     const std::string line = "PATH='" + bin.path() +
-                             ":/usr/bin:/bin' timeout -s KILL 60 '" MDPREP_PATH "' render '" + baked() +
-                             "' -o '" + folder_.file("a.mp4") +
+                             ":/usr/bin:/bin' timeout -s KILL 60 '" MDPREP_PATH "' render '" +
+                             baked() + "' -o '" + folder_.file("a.mp4") +
                              "' --frames 0:9 --size 256x256 -q 2> '" + folder_.file("err") + "'";
     Outcome outcome;
     outcome.status = WEXITSTATUS(std::system(line.c_str()));
