@@ -41,7 +41,8 @@ struct ThreadLimit::Scope {
   explicit Scope(int threads) : outer(context) {
     if (threads <= 0 || (outer.max_threads > 0 && outer.max_threads <= threads)) return;
     context.max_threads = threads;
-    context.arena = threads > 1 ? &arena.emplace(threads) : nullptr;
+    const int places = std::min(threads, tbb::info::default_concurrency());  // more only warn
+    context.arena = places > 1 ? &arena.emplace(places) : nullptr;
   }
 
   LoopContext outer;

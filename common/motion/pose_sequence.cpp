@@ -259,4 +259,27 @@ void check_consistency(const PoseSequence& sequence) {
             "has a skeleton with other bones than its rig");
 }
 
+std::vector<std::uint32_t> lowest_equal_paths(const PoseSequence& sequence,
+                                              std::span<const std::uint64_t> groups,
+                                              std::span<const std::uint64_t> hashes) {
+  std::vector<std::uint32_t> result(sequence.vertex_count);
+  std::vector<std::uint32_t> undecided(sequence.vertex_count);
+  std::iota(undecided.begin(), undecided.end(), 0u);
+  // A round settles the lowest vertex of every hash and all that move like it; vertices whose hash
+  // collided with another path's go on among themselves.
+  while (!undecided.empty()) {
+    const std::vector<std::uint32_t> candidates = lowest_with_hash(undecided, hashes);
+    const std::vector<char> differs = differing(sequence, groups, undecided, candidates);
+    std::vector<std::uint32_t> rest;
+    for (std::size_t i = 0; i < undecided.size(); ++i) {
+      if (differs[i])
+        rest.push_back(undecided[i]);
+      else
+        result[undecided[i]] = candidates[i];
+    }
+    undecided = std::move(rest);
+  }
+  return result;
+}
+
 }  // namespace mdk

@@ -82,7 +82,7 @@ ClusterPoints gather_points(const PoseTable& table, const ClusterMembers& member
 ClusterPoints gather_points(const PoseSequence& sequence, const ClusterMembers& members,
                             std::uint32_t cluster, double unit) {
   const double per_unit = 1 / unit;
-  const ScratchFolder& scratch = sequence.positions.get_allocator().folder();
+  const ScratchFolder scratch = sequence.positions.get_allocator().folder();
   return centred_cluster(sequence.key_count(), members, cluster, scratch,
                          [&](std::uint32_t key, std::uint32_t v) {
                            return to_double(sequence.pose(key)[v]) * per_unit;
