@@ -11,7 +11,7 @@ struct TraceCounters {
   std::uint64_t node_visits = 0;       ///< kd traversal steps or boxes tested, once per tile
   std::uint64_t triangle_tests = 0;    ///< ray-triangle pairs evaluated
   std::uint64_t triangle_setups = 0;   ///< tile-triangle pairs looked at before any ray
-  std::uint64_t clusters_entered = 0;  ///< tile-cluster pairs whose local box was met
+  std::uint64_t clusters_entered = 0;  ///< tile-cluster pairs whose local box was entered
 
   TraceCounters& operator+=(const TraceCounters& b) {
     node_visits += b.node_visits;

@@ -216,7 +216,6 @@ BoxRay make_box_ray(const WorldRay& world, const Affine3d& local_from_world, con
   // zero, its inverse is finite and no product is without a value.
   const double shortest = std::max(longest * 0x1p-40, 1e-30);
   BoxRay ray;
-  ray.t_begin = std::min(0.0f, world.t_min);
   for (std::size_t k = 0; k < 3; ++k) {
     const double* row = local_from_world.m[k];
     const double stretch = std::abs(row[0]) + std::abs(row[1]) + std::abs(row[2]);
@@ -230,6 +229,7 @@ BoxRay make_box_ray(const WorldRay& world, const Affine3d& local_from_world, con
     ray.inverse[k] = static_cast<float>(
         1 / (std::abs(component) < shortest ? std::copysign(shortest, component) : component));
   }
+  ray.t_begin = std::min(0.0f, world.t_min);
   return ray;
 }
 
