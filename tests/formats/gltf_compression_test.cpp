@@ -4,8 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "formats/gltf_draco.h"
-#include "formats/gltf_meshopt.h"
+#include "formats/gltf/compression.h"
 #include "tests/formats/compressed_gltf.h"
 #include "tests/formats/expect_error.h"
 

@@ -1,4 +1,4 @@
-#include "formats/obj_materials.h"
+#include "formats/mesh/materials.h"
 
 #include <gmock/gmock.h>
 
@@ -6,7 +6,7 @@
 
 #include "common/base/error.h"
 #include "formats/image_writer.h"
-#include "formats/mesh_sequence_reader.h"
+#include "formats/mesh/reader.h"
 #include "tests/formats/temp_folder.h"
 
 namespace mdk::test {

@@ -1,4 +1,4 @@
-#include "formats/obj_reader.h"
+#include "formats/mesh/triangle_mesh.h"
 
 #include <gmock/gmock.h>
 
@@ -17,7 +17,7 @@ class ObjReader : public testing::Test {
   TriangleMesh read(const std::string& text) {
     const std::string path = folder_.file("mesh.obj");
     write_bytes(path, Bytes(text.begin(), text.end()));
-    return read_obj(path, ObjContent::kShapeAndMaterials);
+    return read_mesh(path, ObjContent::kShapeAndMaterials);
   }
   void expect_bad(const std::string& text, const std::string& words) {
     expect_error(ErrorCode::kBadInput, words, [&] { read(text); });
@@ -127,8 +127,8 @@ TEST_F(ObjReader, AnyCutOrFlippedByteIsReadOrRefusedInOneSentence) {
 
 TEST_F(ObjReader, AFileThatIsNotThereIsAnIoError) {
   expect_error(ErrorCode::kIo, "none.obj",
-               [&] { read_obj(folder_.file("none.obj"), ObjContent::kShape); });
-  expect_error(ErrorCode::kIo, "folder", [&] { read_obj(folder_.path(), ObjContent::kShape); });
+               [&] { read_mesh(folder_.file("none.obj"), ObjContent::kShape); });
+  expect_error(ErrorCode::kIo, "folder", [&] { read_mesh(folder_.path(), ObjContent::kShape); });
 }
 
 }  // namespace

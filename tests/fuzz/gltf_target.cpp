@@ -1,7 +1,7 @@
 // glTF, text and binary, through the whole reader.
 #include <numeric>
 
-#include "formats/gltf_reader.h"
+#include "formats/gltf/reader.h"
 #include "formats/image_writer.h"
 #include "tests/formats/compressed_gltf.h"
 #include "tests/formats/gltf_builder.h"

@@ -4,7 +4,7 @@
 #include <numeric>
 #include <stdexcept>
 
-#include "formats/gltf_image.h"
+#include "formats/gltf/images.h"
 #include "formats/image_writer.h"
 #include "tests/fuzz/fuzz_target.h"
 
