@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "common/base/error.h"
+#include "formats/files/notes.h"
 
 namespace mdk {
 
@@ -64,9 +65,7 @@ struct SceneImport {
   std::vector<const aiNode*> nodes;  ///< parents first; their numbers are glTF's
   std::unordered_map<std::string, std::size_t> node_numbers;  ///< by name: the first of it
 
-  void note(const std::string& sentence) {
-    if (std::ranges::find(notes, sentence) == notes.end()) notes.push_back(sentence);
-  }
+  void note(const std::string& sentence) { add_note(notes, sentence); }
   [[noreturn]] void fail(const std::string& sentence) const { throw bad_input(path, sentence); }
 };
 

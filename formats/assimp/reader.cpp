@@ -18,7 +18,6 @@
 #include <span>
 #include <string_view>
 #include <thread>
-#include <utility>
 
 #include "common/base/error.h"
 #include "formats/assimp/answer.h"
@@ -167,8 +166,8 @@ ReadResult read_with_assimp(const std::string& path, const ReadOptions& options,
     throw bad_input(path,
                     "is read through Assimp, which this build is without; build it where "
                     "libassimp-dev is installed, or export the mesh as glTF");
-  AssimpAnswer answer = run_assimp(path, progress);
-  ReadResult result = read_glb(path, std::move(answer.glb), options, progress);
+  const AssimpAnswer answer = run_assimp(path, progress);
+  ReadResult result = read_glb(path, answer.glb, options, progress);
   result.read_through = "Assimp " + answer.version;
   result.notes.insert(result.notes.begin(), answer.notes.begin(), answer.notes.end());
   result.notes.insert(result.notes.begin(), path + " was read through " + result.read_through +

@@ -47,10 +47,6 @@ float load_float(const unsigned char* bytes, ComponentType type, bool normalized
   }
 }
 
-[[noreturn]] void fail(const Document& document, int accessor, const std::string& sentence) {
-  throw bad_input(document.path, "accessor " + std::to_string(accessor) + " " + sentence);
-}
-
 /// Calls read(element, bytes) for every element that has bytes, base first, then replacements.
 template <class Read>
 void for_each_element(const Document& document, int accessor, const Read& read) {
@@ -60,7 +56,9 @@ void for_each_element(const Document& document, int accessor, const Read& read) 
   for (std::size_t s = 0; s < a.sparse_count; ++s) {
     const std::size_t i = load_unsigned(a.sparse_indices + s * component_bytes(a.sparse_index_type),
                                         a.sparse_index_type);
-    if (i >= a.count) fail(document, accessor, "has a sparse index past its end");
+    if (i >= a.count)
+      fail(document, "accessor", static_cast<std::size_t>(accessor),
+           "has a sparse index past its end");
     read(i, a.sparse_values + s * a.element_bytes());
   }
 }
@@ -95,14 +93,16 @@ std::vector<float> read_floats(const Document& document, int accessor) {
       values[i * components + c] = load_float(bytes + c * width, a.type, a.normalized);
   });
   if (!std::ranges::all_of(values, [](float v) { return std::isfinite(v); }))
-    fail(document, accessor, "holds a number that is not finite");
+    fail(document, "accessor", static_cast<std::size_t>(accessor),
+         "holds a number that is not finite");
   return values;
 }
 
 std::vector<std::uint32_t> read_unsigned(const Document& document, int accessor) {
   const Accessor& a = entry(document.accessors, accessor);
   if (!is_unsigned(a.type) || a.normalized)
-    fail(document, accessor, "holds indices but is not of plain unsigned integers");
+    fail(document, "accessor", static_cast<std::size_t>(accessor),
+         "holds indices but is not of plain unsigned integers");
   const auto components = static_cast<std::size_t>(a.components);
   const std::size_t width = component_bytes(a.type);
   std::vector<std::uint32_t> values(a.count * components, 0);

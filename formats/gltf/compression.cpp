@@ -106,7 +106,9 @@ void CompressionReader::add_primitive(const JsonObject& o, const JsonObject& att
   if (!o.has("indices")) o.fail("is compressed by Draco but has no index list");
   DracoPrimitive primitive{o.place(), draco_range(*extension), 0, {}};
   primitive.indices = static_cast<std::size_t>(o.index("indices", "accessors", Need::kRequired));
-  for (const auto& [name, id] : extension->object("attributes", Need::kRequired)->named_sizes()) {
+  const JsonObject ids = *extension->object("attributes", Need::kRequired);
+  for (const std::string& name : ids.keys()) {
+    const int id = ids.small_size(name.c_str(), 0);
     if (!attributes.has(name.c_str()))
       o.fail("has a Draco attribute that is none of the primitive's own");
     const auto accessor =
@@ -139,8 +141,8 @@ void CompressionReader::require_plain_copy(const JsonObject& primitive,
     return accessor == kNone || entry(properties_.accessors, accessor).elements.view != kNone;
   };
   bool plain = is_plain(primitive.index("indices", "accessors", Need::kOptional));
-  for (const auto& [name, accessor] : attributes.named_indices("accessors"))
-    plain &= is_plain(accessor);
+  for (const std::string& name : attributes.keys())
+    plain &= is_plain(attributes.index(name.c_str(), "accessors", Need::kRequired));
   if (!plain) no_decoder(primitive, "KHR_draco_mesh_compression", "libdraco-dev");
 }
 

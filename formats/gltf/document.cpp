@@ -2,12 +2,10 @@
 // them, and what accessors and images point at.
 #include "formats/gltf/document.h"
 
-#include <algorithm>
 #include <map>
 #include <utility>
 
 #include "common/base/error.h"
-#include "common/base/printable_text.h"
 #include "formats/gltf/compression.h"
 #include "formats/gltf/properties.h"
 
@@ -20,8 +18,8 @@ constexpr std::size_t kMaxZeroElements = std::size_t{1} << 24;
 /// Gives a document whose properties are read its bytes.
 class BytesLoader {
  public:
-  BytesLoader(const Properties& properties, Document& document)
-      : properties_(properties), document_(document) {}
+  BytesLoader(const Properties& properties, Document& document, ReadResult& result)
+      : properties_(properties), document_(document), result_(result) {}
 
   void load(std::span<const unsigned char> binary_chunk) {
     for (const BufferSource& buffer : properties_.buffers)
@@ -29,7 +27,7 @@ class BytesLoader {
     for (const MeshoptView& view : properties_.meshopt_views) {
       document_.decoded.push_back(decode_meshopt(view, range_bytes(view.data)));
       if (document_.decoded.back().empty())
-        fail("buffer view", view.view, "has broken meshopt data");
+        fail(document_, "buffer view", view.view, "has broken meshopt data");
       decoded_views_[view.view] = document_.decoded.back();
     }
     for (std::size_t i = 0; i < document_.accessors.size(); ++i) find_elements(i);
@@ -40,27 +38,23 @@ class BytesLoader {
   }
 
  private:
-  [[noreturn]] void fail(const char* what, std::size_t number, const std::string& sentence) const {
-    throw bad_input(document_.path, what + (" " + std::to_string(number)) + " " + sentence);
-  }
-
   Bytes read_buffer(const BufferSource& buffer, std::span<const unsigned char> binary_chunk) {
     const std::size_t number = document_.buffers.size();
     if (buffer.is_empty) return {};
     if (buffer.uri.empty()) {
       if (buffer.bytes > binary_chunk.size())
-        fail("buffer", number, "has no uri, and no binary chunk holds its bytes");
+        fail(document_, "buffer", number, "has no uri, and no binary chunk holds its bytes");
       return Bytes(binary_chunk.begin(),
                    binary_chunk.begin() + static_cast<std::ptrdiff_t>(buffer.bytes));
     }
     if (std::optional<Bytes> bytes = data_uri_bytes(buffer.uri)) {
       if (bytes->size() != buffer.bytes)
-        fail("buffer", number, "has a data URI that does not decode to its byteLength");
+        fail(document_, "buffer", number, "has a data URI that does not decode to its byteLength");
       return std::move(*bytes);
     }
     const std::string file = resolve_uri(document_.path, buffer.uri);
     Bytes bytes = read_whole_file(file);
-    document_.dependencies.push_back(file);
+    result_.dependencies.push_back(file);
     if (bytes.size() < buffer.bytes)
       throw bad_input(file, "holds " + std::to_string(bytes.size()) + " bytes where " +
                                 std::to_string(buffer.bytes) + " are needed; it may be cut short");
@@ -89,13 +83,14 @@ class BytesLoader {
       const std::size_t offset = source.elements.offset;
       const std::size_t stride = entry(properties_.views, source.elements.view).stride;
       if (stride != 0) a.stride = stride;
-      if (a.stride < element) fail("accessor", i, "has elements wider than their stride");
+      if (a.stride < element)
+        fail(document_, "accessor", i, "has elements wider than their stride");
       if (offset > bytes.size() || element > bytes.size() - offset ||
           a.count - 1 > (bytes.size() - offset - element) / a.stride)
-        fail("accessor", i, "reaches past its buffer view");
+        fail(document_, "accessor", i, "reaches past its buffer view");
       a.data = bytes.data() + offset;
     } else if (a.count > kMaxZeroElements) {
-      fail("accessor", i, "has no data for " + std::to_string(a.count) + " elements");
+      fail(document_, "accessor", i, "has no data for " + std::to_string(a.count) + " elements");
     }
     if (a.sparse_count == 0) return;
     a.sparse_indices = sparse_part(i, source.sparse_indices, component_bytes(a.sparse_index_type));
@@ -107,7 +102,7 @@ class BytesLoader {
     const std::span<const unsigned char> bytes = view_bytes(source.view);
     const std::size_t count = document_.accessors[accessor].sparse_count;
     if (source.offset > bytes.size() || count > (bytes.size() - source.offset) / width)
-      fail("accessor", accessor, "has sparse data that reaches past its buffer view");
+      fail(document_, "accessor", accessor, "has sparse data that reaches past its buffer view");
     return bytes.data() + source.offset;
   }
 
@@ -116,7 +111,7 @@ class BytesLoader {
     if (properties_.image_views[i] != kNone) {
       image.bytes = view_bytes(properties_.image_views[i]);
     } else if (std::optional<Bytes> bytes = data_uri_bytes(image.uri)) {
-      if (bytes->empty()) fail("image", i, "has a data URI that cannot be decoded");
+      if (bytes->empty()) fail(document_, "image", i, "has a data URI that cannot be decoded");
       image.bytes = document_.decoded.emplace_back(std::move(*bytes));
     }
   }
@@ -125,18 +120,14 @@ class BytesLoader {
     for (std::size_t m = 0; m < document_.meshes.size(); ++m)
       for (const Primitive& p : document_.meshes[m].primitives)
         if (p.indices != kNone && !entry(document_.accessors, p.indices).data)
-          fail("mesh", m, "has an index list without data");
+          fail(document_, "mesh", m, "has an index list without data");
   }
 
   const Properties& properties_;
   Document& document_;
+  ReadResult& result_;
   std::map<std::size_t, std::span<const unsigned char>> decoded_views_;
 };
-
-[[noreturn]] void fail(const Document& document, const char* what, std::size_t number,
-                       const std::string& sentence) {
-  throw bad_input(document.path, what + (" " + std::to_string(number)) + " " + sentence);
-}
 
 void check_skin(const Document& document, std::size_t s) {
   const Skin& skin = document.skins[s];
@@ -220,23 +211,17 @@ void check_links(const Document& document) {
 
 }  // namespace
 
-void Notes::add(const std::string& sentence) {
-  const std::string line = printable_line(sentence);
-  if (std::ranges::find(sentences_, line) == sentences_.end()) sentences_.push_back(line);
+void fail(const Document& document, const char* what, std::size_t number,
+          const std::string& sentence) {
+  throw bad_input(document.path, what + (" " + std::to_string(number)) + " " + sentence);
 }
 
-Document load_document(const std::string& path, Notes& notes) {
-  Document document = parse_document(path, read_whole_file(path), notes);
-  document.dependencies.insert(document.dependencies.begin(), path);
-  return document;
-}
-
-Document parse_document(const std::string& path, const Bytes& bytes, Notes& notes) {
+Document parse_document(const std::string& path, const Bytes& bytes, ReadResult& result) {
   Document document;
   document.path = path;
   const FileParts parts = file_parts(path, bytes);
-  const Properties properties = read_properties(parts.json, document, notes);
-  BytesLoader(properties, document).load(parts.binary);
+  const Properties properties = read_properties(parts.json, document, result);
+  BytesLoader(properties, document, result).load(parts.binary);
   order_nodes(document);
   document.visible_nodes = visible_nodes(document, properties.scene);
   check_links(document);

@@ -12,6 +12,7 @@
 #include "common/motion/appearance.h"
 #include "formats/gltf/files.h"
 #include "formats/gltf/quaternion.h"
+#include "formats/reading.h"
 
 namespace mdk::gltf {
 
@@ -120,16 +121,6 @@ struct ImageSource {
   std::string uri;                       ///< relative to the file's folder
 };
 
-/// Sentences about what is left out: each once, in the order they came up.
-class Notes {
- public:
-  void add(const std::string& sentence);
-  const std::vector<std::string>& sentences() const { return sentences_; }
-
- private:
-  std::vector<std::string> sentences_;
-};
-
 /// Owns the bytes that its accessors and images point at.
 struct Document {
   Document() = default;
@@ -151,17 +142,16 @@ struct Document {
   std::vector<Animation> animations;
   std::vector<MaterialSource> materials;
   std::vector<ImageSource> images;
-  std::vector<std::string> dependencies;  ///< every file read so far
-  std::vector<std::string> unread;        ///< images that could not be read
 };
 
-/// Reads and checks `path` and its buffers; images are left to whoever shows them. Throws Error as
-/// read_gltf does.
-Document load_document(const std::string& path, Notes& notes);
+/// Reads and checks the bytes of a .gltf or .glb that stand, or would stand, at `path`, and buffers
+/// beside it; images are left to those who show them. What is read and left out is added to
+/// `result`. Throws Error as read_gltf does.
+Document parse_document(const std::string& path, const Bytes& bytes, ReadResult& result);
 
-/// The same for the bytes of a .gltf or .glb that stand, or would stand, at `path`, which is not
-/// among the dependencies.
-Document parse_document(const std::string& path, const Bytes& bytes, Notes& notes);
+/// Throws Error (kBadInput): "accessor 3 reaches past its buffer view".
+[[noreturn]] void fail(const Document& document, const char* what, std::size_t number,
+                       const std::string& sentence);
 
 /// All numbers of an accessor, element after element: count * components. Normalised integers
 /// become [0, 1] or [-1, 1], other integers their value. Throws Error (kBadInput) for a number that

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "common/base/error.h"
+#include "formats/files/notes.h"
 #include "formats/gltf/document.h"
 
 namespace mdk::gltf {
@@ -56,7 +57,8 @@ std::vector<Triangle> unroll(PrimitiveMode mode, std::size_t count, const Corner
 
 class PrimitiveReader {
  public:
-  PrimitiveReader(const Document& document, const Primitive& from, std::string place, Notes& notes)
+  PrimitiveReader(const Document& document, const Primitive& from, std::string place,
+                  std::vector<std::string>& notes)
       : document_(document), from_(from), place_(std::move(place)), notes_(notes) {}
 
   PrimitiveGeometry read() {
@@ -111,7 +113,7 @@ class PrimitiveReader {
       out_.triangles = unroll(from_.mode, corners, [&](std::size_t i) { return indices[i]; });
     }
     if (from_.mode == PrimitiveMode::kTriangles && corners % 3 != 0)
-      notes_.add(place_ + " ends with an incomplete triangle, which is left out");
+      add_note(notes_, place_ + " ends with an incomplete triangle, which is left out");
   }
 
   void read_normals() {
@@ -169,7 +171,8 @@ class PrimitiveReader {
     const auto set = static_cast<std::size_t>(m.texcoord_set);
     if (m.image == kNone) return;
     if (set >= from_.texcoords.size()) {
-      notes_.add(place_ + " has a texture but not its coordinates; its plain colour is shown");
+      add_note(notes_,
+               place_ + " has a texture but not its coordinates; its plain colour is shown");
       return;
     }
     const std::vector<float> uv =
@@ -204,21 +207,21 @@ class PrimitiveReader {
   const Document& document_;
   const Primitive& from_;
   const std::string place_;
-  Notes& notes_;
+  std::vector<std::string>& notes_;
   PrimitiveGeometry out_;
 };
 
 }  // namespace
 
-MeshGeometry read_mesh(const Document& document, int mesh, Notes& notes) {
+MeshGeometry read_mesh(const Document& document, int mesh, std::vector<std::string>& notes) {
   MeshGeometry geometry;
   const std::vector<Primitive>& primitives = entry(document.meshes, mesh).primitives;
   for (std::size_t p = 0; p < primitives.size(); ++p) {
     const std::string place = "mesh " + std::to_string(mesh) + ", primitive " + std::to_string(p);
     if (primitives[p].mode < PrimitiveMode::kTriangles) {
-      notes.add("points and lines are left out");
+      add_note(notes, "points and lines are left out");
     } else if (primitives[p].positions == kNone) {
-      notes.add(place + " has no positions and is left out");
+      add_note(notes, place + " has no positions and is left out");
     } else {
       PrimitiveGeometry read = PrimitiveReader(document, primitives[p], place, notes).read();
       if (!read.triangles.empty()) geometry.primitives.push_back(std::move(read));

@@ -40,7 +40,7 @@ struct MeshGeometry {
   std::vector<PrimitiveGeometry> primitives;  ///< those that have triangles
 };
 
-/// Throws Error (kBadInput) naming mesh and primitive.
-MeshGeometry read_mesh(const Document& document, int mesh, Notes& notes);
+/// What is left out becomes notes. Throws Error (kBadInput) naming mesh and primitive.
+MeshGeometry read_mesh(const Document& document, int mesh, std::vector<std::string>& notes);
 
 }  // namespace mdk::gltf

@@ -164,20 +164,9 @@ std::vector<JsonObject> JsonObject::objects(const char* key, const std::string& 
   return all;
 }
 
-std::vector<std::pair<std::string, int>> JsonObject::named_indices(const char* list) const {
-  std::vector<std::pair<std::string, int>> all;
-  for (const auto& [name, value] : value_.items())
-    all.emplace_back(name, index_value(value, name, list));
-  return all;
-}
-
-std::vector<std::pair<std::string, int>> JsonObject::named_sizes() const {
-  std::vector<std::pair<std::string, int>> all;
-  for (const auto& [name, value] : value_.items()) {
-    if (!value.is_number_unsigned() || value.get<std::uint64_t>() > kMaxInt)
-      fail("has a " + quote(name) + " that is no whole number");
-    all.emplace_back(name, value.get<int>());
-  }
+std::vector<std::string> JsonObject::keys() const {
+  std::vector<std::string> all;
+  for (const auto& [key, value] : value_.items()) all.push_back(key);
   return all;
 }
 

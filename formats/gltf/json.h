@@ -57,10 +57,7 @@ class JsonObject {
   /// Their places: `what` and a number. None where the list is absent.
   std::vector<JsonObject> objects(const char* key, const std::string& what, Need need) const;
 
-  /// The members, whose values index the top-level `list`.
-  std::vector<std::pair<std::string, int>> named_indices(const char* list) const;
-  /// The members; their values are whole numbers that an int holds.
-  std::vector<std::pair<std::string, int>> named_sizes() const;
+  std::vector<std::string> keys() const;
   /// The strings of a list; null for what is no string.
   std::vector<std::optional<std::string>> strings(const char* key) const;
 

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "common/base/error.h"
+#include "formats/files/notes.h"
 #include "formats/gltf/compression.h"
 #include "formats/gltf/json.h"
 
@@ -111,8 +112,8 @@ struct Sampler {
 
 class PropertiesReader {
  public:
-  PropertiesReader(const Json& json, Document& document, Notes& notes)
-      : root_(document.path, json, "the file", json), document_(document), notes_(notes) {}
+  PropertiesReader(const Json& json, Document& document, ReadResult& result)
+      : root_(document.path, json, "the file", json), document_(document), result_(result) {}
 
   Properties read() {
     check_asset();
@@ -154,7 +155,8 @@ class PropertiesReader {
     }
     for (const auto& name : root_.strings("extensionsUsed"))
       if (name && !is_known(*name))
-        notes_.add("the extension " + name->substr(0, kMaxExtensionName) + " is left out");
+        add_note(result_.notes,
+                 "the extension " + name->substr(0, kMaxExtensionName) + " is left out");
   }
 
   void read_buffer(const JsonObject& o) {
@@ -234,9 +236,15 @@ class PropertiesReader {
     document_.meshes.push_back(std::move(mesh));
   }
 
+  /// Of all attributes, those that are not used, too.
+  static void check_indices(const JsonObject& attributes) {
+    for (const std::string& name : attributes.keys())
+      attributes.index(name.c_str(), "accessors", Need::kRequired);
+  }
+
   Primitive read_primitive(const JsonObject& o) {
     const JsonObject attributes = *o.object("attributes", Need::kRequired);
-    attributes.named_indices("accessors");  // those that are not used, too
+    check_indices(attributes);
     const auto role = [](const JsonObject& from, const std::string& name) {
       return from.index(name.c_str(), "accessors", Need::kOptional);
     };
@@ -262,7 +270,7 @@ class PropertiesReader {
       o.fail("has joints without weights or weights without joints");
     for (const JsonObject& target :
          o.objects("targets", o.place() + ", morph target", Need::kOptional)) {
-      target.named_indices("accessors");
+      check_indices(target);
       p.target_offsets.push_back(role(target, "POSITION"));
     }
     compression_.add_primitive(o, attributes);
@@ -406,7 +414,7 @@ class PropertiesReader {
 
   const JsonObject root_;
   Document& document_;
-  Notes& notes_;
+  ReadResult& result_;
   Properties properties_;
   CompressionReader compression_{properties_};
   std::vector<TextureSource> textures_;
@@ -415,10 +423,10 @@ class PropertiesReader {
 
 }  // namespace
 
-Properties read_properties(std::string_view json, Document& document, Notes& notes) {
+Properties read_properties(std::string_view json, Document& document, ReadResult& result) {
   const Json root = parse_json(document.path, json);
   if (!root.is_object()) throw bad_input(document.path, "the JSON is not an object");
-  return PropertiesReader(root, document, notes).read();
+  return PropertiesReader(root, document, result).read();
 }
 
 }  // namespace mdk::gltf

@@ -80,9 +80,9 @@ struct Properties {
 };
 
 /// Fills in `document` what its path's JSON says of accessors, meshes, nodes, skins, animations,
-/// materials and images. Afterwards every index is in range, every buffer view lies inside its
-/// buffer's length, and every required extension is known. Throws Error (kBadInput) naming the
-/// place, kOverLimit. Cost: one parse.
-Properties read_properties(std::string_view json, Document& document, Notes& notes);
+/// materials and images, and adds notes to `result`. Afterwards every index is in range, every
+/// buffer view lies inside its buffer's length, and every required extension is known. Throws Error
+/// (kBadInput) naming the place, kOverLimit. Cost: one parse.
+Properties read_properties(std::string_view json, Document& document, ReadResult& result);
 
 }  // namespace mdk::gltf

@@ -11,6 +11,7 @@
 
 #include "common/base/error.h"
 #include "common/base/parallel.h"
+#include "formats/files/notes.h"
 #include "formats/gltf/animation.h"
 #include "formats/gltf/document.h"
 #include "formats/gltf/geometry.h"
@@ -63,7 +64,8 @@ struct Scene {
   std::vector<Instance> instances;
 };
 
-Scene read_scene(const Document& document, const ReadOptions& options, Notes& notes) {
+Scene read_scene(const Document& document, const ReadOptions& options,
+                 std::vector<std::string>& notes) {
   check_extent(document, options);
   Scene scene;
   scene.skins = read_skins(document);
@@ -97,8 +99,9 @@ std::vector<Affine3d> joints_of(const Scene& scene, const Instance& instance,
 /// Gathers an appearance, primitive by primitive, in triangle order.
 class AppearanceBuilder {
  public:
-  /// Keeps references to both; image files that are read are added to `document.dependencies`.
-  AppearanceBuilder(Document& document, Notes& notes) : document_(document), notes_(notes) {}
+  /// Keeps references to both; image files, read or unread, and notes are added to `result`.
+  AppearanceBuilder(const Document& document, ReadResult& result)
+      : document_(document), result_(result) {}
 
   /// Adds `triangles` of `geometry` (its own vertex numbers, as wound in the result). An image that
   /// is missing or broken becomes a note and the plain base colour.
@@ -112,8 +115,8 @@ class AppearanceBuilder {
   std::uint32_t texture_for(int image);
   std::uint32_t load_texture(int image);
 
-  Document& document_;
-  Notes& notes_;
+  const Document& document_;
+  ReadResult& result_;
   Appearance appearance_;
   std::map<std::tuple<int, bool, bool>, std::uint32_t> materials_;  ///< source, normals, texcoords
   std::map<int, std::uint32_t> textures_;                           ///< by image
@@ -171,7 +174,8 @@ std::uint32_t AppearanceBuilder::texture_for(int image) {
 std::uint32_t AppearanceBuilder::load_texture(int image) {
   const ImageSource& source = entry(document_.images, image);
   const auto leave_out = [&](const std::string& why) {
-    notes_.add("image " + std::to_string(image) + " " + why + "; the plain base colour is shown");
+    add_note(result_.notes,
+             "image " + std::to_string(image) + " " + why + "; the plain base colour is shown");
     return kNoTexture;
   };
   Bytes file;
@@ -182,10 +186,10 @@ std::uint32_t AppearanceBuilder::load_texture(int image) {
       path = resolve_uri(document_.path, source.uri);
       file = read_whole_file(path);
     } catch (const Error&) {
-      if (!path.empty()) document_.unread.push_back(path);
+      if (!path.empty()) result_.unread.push_back(path);
       return leave_out("(\"" + source.uri.substr(0, 200) + "\") cannot be read");
     }
-    document_.dependencies.push_back(path);
+    result_.dependencies.push_back(path);
     bytes = file;
   }
   std::string problem;
@@ -195,9 +199,10 @@ std::uint32_t AppearanceBuilder::load_texture(int image) {
 }
 
 /// Triangles, appearance and smoothing groups; mirrored instances are turned inside out again.
-std::vector<std::uint64_t> assemble(Document& document, const Scene& scene, const NodePose& pose,
-                                    Notes& notes, PoseSequence& sequence) {
-  AppearanceBuilder appearance(document, notes);
+std::vector<std::uint64_t> assemble(const Document& document, const Scene& scene,
+                                    const NodePose& pose, ReadResult& result) {
+  PoseSequence& sequence = result.sequence;
+  AppearanceBuilder appearance(document, result);
   std::vector<std::uint64_t> groups;
   std::uint32_t mesh = 0;  // primitives of one node follow each other and are one mesh
   for (std::size_t i = 0; i < scene.instances.size(); ++i) {
@@ -298,15 +303,16 @@ void check_rate(const ReadOptions& options) {
     throw Error(ErrorCode::kUsage, "--fps must be above 0 and at most 10000");
 }
 
-ReadResult unfold(Document document, Notes& notes, const ReadOptions& options,
-                  ProgressSink& progress) {
+/// Everything but the bytes, which stand at `path`.
+void unfold(const std::string& path, const Bytes& bytes, const ReadOptions& options,
+            ProgressSink& progress, ReadResult& result) {
+  const Document document = parse_document(path, bytes, result);
   const std::vector<AnimationClip> clips = read_clips(document, options);
-  const Scene scene = read_scene(document, options, notes);
+  const Scene scene = read_scene(document, options, result.notes);
 
-  ReadResult result;
   PoseSequence& sequence = result.sequence;
   const NodePose first_pose = pose_nodes(document, clips[0], 0.0);
-  const std::vector<std::uint64_t> groups = assemble(document, scene, first_pose, notes, sequence);
+  const std::vector<std::uint64_t> groups = assemble(document, scene, first_pose, result);
   const RigPlan plan(scene.instances, scene.skins);
   if (plan.max_links() > kMaxLinks)
     throw too_large(document.path, "over 4 billion joint weights or morph offsets");
@@ -318,12 +324,7 @@ ReadResult unfold(Document document, Notes& notes, const ReadOptions& options,
   decode_positions(sequence);
   check_finite(document, sequence);
   check_consistency(sequence);
-
-  result.dependencies = std::move(document.dependencies);
-  result.unread = std::move(document.unread);
-  result.notes = notes.sentences();
   progress.report("read", 1.0);
-  return result;
 }
 
 }  // namespace
@@ -332,19 +333,23 @@ ReadResult read_gltf(const std::string& path, const ReadOptions& options, Progre
   check_rate(options);
   progress.report("read", 0.0);
   try {
-    Notes notes;
-    return unfold(load_document(path, notes), notes, options, progress);
+    ReadResult result;
+    const Bytes bytes = read_whole_file(path);
+    result.dependencies.push_back(path);
+    unfold(path, bytes, options, progress, result);
+    return result;
   } catch (const std::bad_alloc&) {
     throw no_memory(path);
   }
 }
 
-ReadResult read_glb(const std::string& path, Bytes bytes, const ReadOptions& options,
+ReadResult read_glb(const std::string& path, const Bytes& bytes, const ReadOptions& options,
                     ProgressSink& progress) {
   check_rate(options);
   try {
-    Notes notes;
-    return unfold(parse_document(path, std::move(bytes), notes), notes, options, progress);
+    ReadResult result;
+    unfold(path, bytes, options, progress, result);
+    return result;
   } catch (const std::bad_alloc&) {
     throw no_memory(path);
   }

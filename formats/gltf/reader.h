@@ -18,7 +18,7 @@ ReadResult read_gltf(const std::string& path, const ReadOptions& options, Progre
 
 /// The same for a binary glTF in memory, which was made from the file `path`: it is named in
 /// messages, is no dependency, and images are looked for beside it.
-ReadResult read_glb(const std::string& path, std::vector<unsigned char> bytes,
+ReadResult read_glb(const std::string& path, const std::vector<unsigned char>& bytes,
                     const ReadOptions& options, ProgressSink& progress);
 
 }  // namespace mdk

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "common/base/error.h"
+#include "formats/files/notes.h"
 #include "formats/gltf/files.h"
 #include "formats/gltf/images.h"
 #include "formats/mapped_file.h"
@@ -124,9 +125,7 @@ class AppearanceReader {
   };
 
   void note(const std::string& sentence) {
-    if (result_.notes.size() >= kMaxNotes) return;
-    if (std::ranges::find(result_.notes, sentence) == result_.notes.end())
-      result_.notes.push_back(sentence);
+    if (result_.notes.size() < kMaxNotes) add_note(result_.notes, sentence);
   }
 
   /// Where faces name no material: what vertex colours are multiplied with.

@@ -32,7 +32,6 @@ void require_clip(const std::string& name, const std::string& path, const ReadOp
 /// Everything but the poses, which stand in `first`, read from `path`.
 ReadResult begin_result(const std::string& path, TriangleMesh& first) {
   ReadResult result;
-  result.notes = std::move(first.notes);
   result.sequence.appearance = read_appearance(path, first, result);
   result.sequence.vertex_count = static_cast<std::uint32_t>(first.vertices.size());
   result.sequence.triangles = std::move(first.triangles);

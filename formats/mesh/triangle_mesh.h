@@ -30,8 +30,7 @@ struct TriangleMesh {
   std::vector<Triangle> triangles;
   /// Per vertex, linear RGBA, 8 bits each, red lowest; empty where no vertex has a colour.
   std::vector<std::uint32_t> vertex_colors;
-  MaterialUse materials;           ///< of .obj files, where asked for
-  std::vector<std::string> notes;  ///< one sentence per thing left out
+  MaterialUse materials;  ///< of .obj files, where asked for
 };
 
 /// An sRGB channel, clamped to [0, 1] (NaN: 0), as linear light.

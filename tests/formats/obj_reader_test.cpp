@@ -35,7 +35,6 @@ TEST_F(ObjReader, VerticesAndTrianglesAreThoseOfTheFile) {
               ElementsAre(Vec3f{0, 0.1f, -2e-3f}, Vec3f{1, 0, 0}, Vec3f{0, 1, 0.5f}));
   EXPECT_THAT(mesh.triangles, ElementsAre(Triangle{{0, 1, 2}}));
   EXPECT_THAT(mesh.vertex_colors, IsEmpty());
-  EXPECT_THAT(mesh.notes, IsEmpty());
 }
 
 TEST_F(ObjReader, APolygonIsAFanWhateverItsShape) {
