@@ -19,7 +19,6 @@
 namespace mdk {
 
 inline constexpr std::uint32_t kMaxCoordinateBits = 16;
-inline constexpr std::uint32_t kMaxCoordinateBits = kMaxCoordinateBits;  // renamed
 
 /// A run of vertices at a key. 72 bytes, as the file holds it.
 struct QuantizedBlock {

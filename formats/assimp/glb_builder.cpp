@@ -1,9 +1,9 @@
-#include "formats/assimp/glb_builder.h"
-
+// GlbBuilder: see import.h.
 #include <cstring>
 #include <utility>
 
 #include "common/base/error.h"
+#include "formats/assimp/import.h"
 
 namespace mdk {
 namespace {

@@ -10,9 +10,9 @@
 #include <map>
 
 #include "common/base/error.h"
-#include "formats/assimp_reader.h"
-#include "formats/files/file_kind.h"
-#include "formats/gltf_reader.h"
+#include "formats/assimp/reader.h"
+#include "formats/file_kind.h"
+#include "formats/gltf/reader.h"
 #include "tests/formats/gltf_builder.h"
 #include "tests/formats/sample_data.h"
 #include "tests/formats/temp_folder.h"

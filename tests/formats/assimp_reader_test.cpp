@@ -1,5 +1,5 @@
 // What comes through Assimp stands where the same motion stands by its formula.
-#include "formats/assimp_reader.h"
+#include "formats/assimp/reader.h"
 
 #include <gmock/gmock.h>
 

@@ -7,7 +7,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "formats/gltf_reader.h"
+#include "formats/gltf/reader.h"
 #include "tests/formats/temp_folder.h"
 
 namespace mdk::test {

@@ -4,8 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "formats/gltf_draco.h"
-#include "formats/gltf_meshopt.h"
+#include "formats/gltf/compression.h"
 #include "tests/formats/compressed_gltf.h"
 #include "tests/formats/expect_error.h"
 
@@ -233,7 +232,7 @@ TEST(GltfDraco, WhatDoesNotFitItsAccessorsIsRefused) {
            {"accessors", 1, "\"count\": 54", "\"count\": 51", "other counts"},
            {"accessors", 1, "\"count\": 54", "\"count\": 16000000", "other counts"},
            {"meshes", 0, "{\"POSITION\": 0}}", "{\"POSITION\": 9}}", "other counts"},
-           {"meshes", 0, "{\"POSITION\": 0}}", "{\"POSITION\": -1}}", "no whole number"},
+           {"meshes", 0, "{\"POSITION\": 0}}", "{\"POSITION\": -1}}", "usable whole number"},
            {"meshes", 0, "{\"POSITION\": 0}}", "{\"NORMAL\": 0}}", "none of the primitive's own"},
            {"meshes", 0, "{\"POSITION\": 0}}", "[]}", "not an object"},
            {"meshes", 0, "\"bufferView\": 0", "\"bufferView\": 5", "bufferView"},

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "common/base/error.h"
-#include "formats/gltf_draco.h"
-#include "formats/gltf_reader.h"
+#include "formats/gltf/compression.h"
+#include "formats/gltf/reader.h"
 #include "tests/formats/gltf_builder.h"
 #include "tests/formats/sample_data.h"
 

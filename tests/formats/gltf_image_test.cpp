@@ -1,4 +1,4 @@
-#include "formats/gltf_image.h"
+#include "formats/gltf/images.h"
 
 #include <gmock/gmock.h>
 #include <sys/resource.h>

@@ -1,5 +1,5 @@
 // Geometry and the shape of the result: what becomes a triangle, a vertex, a clip.
-#include "formats/gltf_reader.h"
+#include "formats/gltf/reader.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

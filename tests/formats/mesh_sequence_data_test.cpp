@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <fstream>
 
-#include "formats/mesh_sequence_reader.h"
-#include "formats/obj_reader.h"
+#include "formats/mesh/reader.h"
+#include "formats/mesh/triangle_mesh.h"
 #include "tests/formats/ply_builder.h"
 #include "tests/formats/sample_data.h"
 #include "tests/formats/temp_folder.h"
@@ -52,7 +52,7 @@ TEST_F(MeshSequenceData, AsPlyOfAnyEncodingTheyAreTheSameToTheBit) {
     const TempFolder folder;
     for (int i = 1; i <= 24; ++i) {
       const TriangleMesh mesh =
-          read_obj(need("sequences/cow_obj/" + std::to_string(i) + ".obj"), ObjContent::kShape);
+          read_mesh(need("sequences/cow_obj/" + std::to_string(i) + ".obj"), ObjContent::kShape);
       PlyBuilder ply(encoding, "element vertex " + std::to_string(mesh.vertices.size()) +
                                    "\nproperty float x\nproperty float y\nproperty float z\n"
                                    "element face " +

@@ -1,4 +1,4 @@
-#include "formats/mesh_sequence_reader.h"
+#include "formats/mesh/reader.h"
 
 #include <gmock/gmock.h>
 

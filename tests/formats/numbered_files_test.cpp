@@ -1,4 +1,4 @@
-#include "formats/numbered_files.h"
+#include "formats/mesh/numbered_files.h"
 
 #include <gmock/gmock.h>
 

@@ -1,12 +1,12 @@
-#include "formats/obj_materials.h"
+#include "formats/mesh/materials.h"
 
 #include <gmock/gmock.h>
 
 #include <cmath>
 
 #include "common/base/error.h"
-#include "formats/files/image_writer.h"
-#include "formats/mesh_sequence_reader.h"
+#include "formats/image_writer.h"
+#include "formats/mesh/reader.h"
 #include "tests/formats/temp_folder.h"
 
 namespace mdk::test {

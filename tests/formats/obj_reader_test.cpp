@@ -1,4 +1,4 @@
-#include "formats/obj_reader.h"
+#include "formats/mesh/triangle_mesh.h"
 
 #include <gmock/gmock.h>
 
@@ -17,7 +17,7 @@ class ObjReader : public testing::Test {
   TriangleMesh read(const std::string& text) {
     const std::string path = folder_.file("mesh.obj");
     write_bytes(path, Bytes(text.begin(), text.end()));
-    return read_obj(path, ObjContent::kShapeAndMaterials);
+    return read_mesh(path, ObjContent::kShapeAndMaterials);
   }
   void expect_bad(const std::string& text, const std::string& words) {
     expect_error(ErrorCode::kBadInput, words, [&] { read(text); });
@@ -35,7 +35,6 @@ TEST_F(ObjReader, VerticesAndTrianglesAreThoseOfTheFile) {
               ElementsAre(Vec3f{0, 0.1f, -2e-3f}, Vec3f{1, 0, 0}, Vec3f{0, 1, 0.5f}));
   EXPECT_THAT(mesh.triangles, ElementsAre(Triangle{{0, 1, 2}}));
   EXPECT_THAT(mesh.vertex_colors, IsEmpty());
-  EXPECT_THAT(mesh.notes, IsEmpty());
 }
 
 TEST_F(ObjReader, APolygonIsAFanWhateverItsShape) {
@@ -127,8 +126,8 @@ TEST_F(ObjReader, AnyCutOrFlippedByteIsReadOrRefusedInOneSentence) {
 
 TEST_F(ObjReader, AFileThatIsNotThereIsAnIoError) {
   expect_error(ErrorCode::kIo, "none.obj",
-               [&] { read_obj(folder_.file("none.obj"), ObjContent::kShape); });
-  expect_error(ErrorCode::kIo, "folder", [&] { read_obj(folder_.path(), ObjContent::kShape); });
+               [&] { read_mesh(folder_.file("none.obj"), ObjContent::kShape); });
+  expect_error(ErrorCode::kIo, "folder", [&] { read_mesh(folder_.path(), ObjContent::kShape); });
 }
 
 }  // namespace

@@ -1,10 +1,9 @@
-#include "formats/ply_reader.h"
+#include "formats/mesh/triangle_mesh.h"
 
 #include <gmock/gmock.h>
 
 #include <limits>
 
-#include "formats/obj_reader.h"
 #include "tests/formats/expect_error.h"
 #include "tests/formats/ply_builder.h"
 #include "tests/formats/temp_folder.h"
@@ -193,7 +192,7 @@ TEST(PlyReader, AnyCutOrFlippedByteIsReadOrRefusedInOneSentence) {
 
 TEST(PlyReader, AFileThatIsNotThereIsAnIoError) {
   const TempFolder folder;
-  expect_error(ErrorCode::kIo, "none.ply", [&] { read_ply(folder.file("none.ply")); });
+  expect_error(ErrorCode::kIo, "none.ply", [&] { read_mesh(folder.file("none.ply"), ObjContent::kShape); });
 }
 
 }  // namespace

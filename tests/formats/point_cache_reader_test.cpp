@@ -1,4 +1,4 @@
-#include "formats/point_cache_reader.h"
+#include "formats/mesh/point_cache.h"
 
 #include <gmock/gmock.h>
 

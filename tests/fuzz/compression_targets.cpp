@@ -3,8 +3,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "formats/gltf_draco.h"
-#include "formats/gltf_meshopt.h"
+#include "formats/gltf/compression.h"
 #include "tests/formats/compressed_gltf.h"
 #include "tests/fuzz/fuzz_target.h"
 

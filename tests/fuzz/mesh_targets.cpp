@@ -3,9 +3,8 @@
 #include <stdexcept>
 #include <string_view>
 
-#include "formats/obj_materials.h"
-#include "formats/obj_reader.h"
-#include "formats/ply_reader.h"
+#include "formats/mesh/materials.h"
+#include "formats/mesh/triangle_mesh.h"
 #include "tests/formats/ply_builder.h"
 #include "tests/fuzz/fuzz_target.h"
 

@@ -2,7 +2,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "formats/point_cache_reader.h"
+#include "formats/mesh/point_cache.h"
 #include "tests/formats/point_cache_builder.h"
 #include "tests/fuzz/fuzz_target.h"
 
