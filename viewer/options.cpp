@@ -94,11 +94,6 @@ void add_session_options(Command& mdview, ViewerOptions& options) {
   mdview.add_flag("--no-state",
                   "neither recall nor keep anything (so it is with --print-state and --quit-after)",
                   options.no_state);
-  mdview
-      .add_value("--random-events", "N", "", "0", options.random_events, count_in({0, 0xffffffffu}))
-      .is_hidden = true;
-  mdview.add_value("--seed", "N", "", "1", options.seed, count_in({0, 0xffffffffu})).is_hidden =
-      true;
   mdview.add_flag("--print-state", "print one JSON object on stdout at the end",
                   options.print_state);
 }

@@ -42,10 +42,8 @@ struct ViewerOptions {
   PanelTab tab = PanelTab::kView;
   std::uint64_t quit_after = 0;  ///< finished frames shown; 0: stay
   bool print_state = false;
-  std::string state_file;           ///< what to remember is kept there; empty: in the usual place
-  bool no_state = false;            ///< nothing is remembered, and nothing recalled
-  std::uint64_t random_events = 0;  ///< done to the window before the end; 0: none
-  std::uint64_t seed = 1;           ///< of them
+  std::string state_file;  ///< what to remember is kept there; empty: in the usual place
+  bool no_state = false;   ///< nothing is remembered, and nothing recalled
 };
 
 /// Reads the command line; empty where it only asked for help or the version, which went to `out`.

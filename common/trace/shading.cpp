@@ -230,7 +230,8 @@ struct Shader::State {
     } else {
       shaded.palette = material_colors.data();
       shaded.palette_index = model.appearance.triangle_materials.data();
-      if (!model.appearance.corner_colors.empty()) shaded.corner_colors = model.appearance.corner_colors.data();
+      if (!model.appearance.corner_colors.empty())
+        shaded.corner_colors = model.appearance.corner_colors.data();
     }
     return shaded;
   }
@@ -248,14 +249,15 @@ struct Shader::State {
     for (std::uint32_t i = 0; i < tile.rows * kTileSide; ++i) {
       const std::uint32_t triangle = tile.hits->triangle[i];
       if (triangle == kNoHit) continue;
-      const Material& material = model.appearance.materials[model.appearance.triangle_materials[triangle]];
+      const Material& material =
+          model.appearance.materials[model.appearance.triangle_materials[triangle]];
       if (material.texture == kNoTexture) continue;
       const float bary[3] = {1 - s.bary1[i] - s.bary2[i], s.bary1[i], s.bary2[i]};
       const auto* uv = &model.appearance.corner_texcoords[std::size_t{3} * triangle];
       const TexCoord at{uv[0].u * bary[0] + uv[1].u * bary[1] + uv[2].u * bary[2],
                         uv[0].v * bary[0] + uv[1].v * bary[1] + uv[2].v * bary[2]};
-      const Vec3f texel =
-          sample_texture(model.appearance.textures[material.texture], model.appearance.texels, at, material);
+      const Vec3f texel = sample_texture(model.appearance.textures[material.texture],
+                                         model.appearance.texels, at, material);
       s.red[i] *= texel.x;
       s.green[i] *= texel.y;
       s.blue[i] *= texel.z;
@@ -276,7 +278,8 @@ struct Shader::State {
   }
 
   bool is_unlit(std::uint32_t triangle) const {
-    return triangle != kNoHit && is_unlit_material[model.appearance.triangle_materials[triangle]] != 0;
+    return triangle != kNoHit &&
+           is_unlit_material[model.appearance.triangle_materials[triangle]] != 0;
   }
 
   void show_normals(Tile& tile) const {

@@ -8,9 +8,8 @@
 #include <system_error>
 
 #include "formats/assimp/import.h"
-#include "formats/file_kind.h"
+#include "formats/files/file_kind.h"
 #include "formats/mesh/triangle_mesh.h"
-#include "formats/neighbor_path.h"
 
 namespace mdk {
 namespace {

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "formats/assimp/import.h"
-#include "formats/file_kind.h"
+#include "formats/files/file_kind.h"
 
 namespace mdk {
 namespace {

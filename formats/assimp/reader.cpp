@@ -21,7 +21,7 @@
 
 #include "common/base/error.h"
 #include "formats/assimp/answer.h"
-#include "formats/file_kind.h"
+#include "formats/files/file_kind.h"
 #include "formats/gltf/reader.h"
 
 extern char** environ;

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "common/base/progress.h"
+#include "common/base/parallel.h"
 #include "formats/reading.h"
 
 namespace mdk {

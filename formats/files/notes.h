@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "common/base/printable_text.h"
+#include "common/base/text.h"
 
 namespace mdk {
 

@@ -9,7 +9,7 @@
 
 #include "common/math/affine3.h"
 #include "common/math/vec3.h"
-#include "common/motion/appearance.h"
+#include "common/motion/pose_sequence.h"
 #include "formats/gltf/files.h"
 #include "formats/gltf/quaternion.h"
 #include "formats/reading.h"

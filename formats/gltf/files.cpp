@@ -8,9 +8,9 @@
 #include <system_error>
 
 #include "common/base/error.h"
-#include "common/base/printable_text.h"
+#include "common/base/text.h"
 #include "formats/files/byte_order.h"
-#include "formats/neighbor_path.h"
+#include "formats/files/file_kind.h"
 
 namespace mdk::gltf {
 namespace {

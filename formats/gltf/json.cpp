@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "common/base/error.h"
-#include "common/base/printable_text.h"
+#include "common/base/text.h"
 
 namespace mdk::gltf {
 namespace {

@@ -11,7 +11,6 @@
 
 #include "common/math/affine3.h"
 #include "common/motion/rig.h"
-#include "common/motion/skeleton.h"
 #include "formats/gltf/animation.h"
 #include "formats/gltf/document.h"
 #include "formats/gltf/geometry.h"

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "common/base/progress.h"
+#include "common/base/parallel.h"
 #include "formats/reading.h"
 
 namespace mdk {

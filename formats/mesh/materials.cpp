@@ -9,13 +9,13 @@
 #include <utility>
 
 #include "common/base/error.h"
+#include "formats/files/file_kind.h"
+#include "formats/files/mapped_file.h"
 #include "formats/files/notes.h"
+#include "formats/files/text.h"
 #include "formats/gltf/files.h"
 #include "formats/gltf/images.h"
-#include "formats/mapped_file.h"
 #include "formats/mesh/words.h"
-#include "formats/neighbor_path.h"
-#include "formats/text_scan.h"
 
 namespace mdk {
 namespace {

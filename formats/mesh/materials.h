@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "common/motion/appearance.h"
+#include "common/motion/pose_sequence.h"
 #include "formats/mesh/triangle_mesh.h"
 #include "formats/reading.h"
 

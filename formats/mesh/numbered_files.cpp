@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "common/base/error.h"
-#include "formats/file_kind.h"
-#include "formats/text_scan.h"
+#include "formats/files/file_kind.h"
+#include "formats/files/text.h"
 
 namespace mdk {
 namespace {

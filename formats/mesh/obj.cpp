@@ -8,9 +8,9 @@
 #include <utility>
 
 #include "common/base/error.h"
+#include "formats/files/text.h"
 #include "formats/mesh/triangle_mesh.h"
 #include "formats/mesh/words.h"
-#include "formats/text_scan.h"
 
 namespace mdk {
 namespace {

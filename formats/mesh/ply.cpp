@@ -14,9 +14,9 @@
 
 #include "common/base/error.h"
 #include "formats/files/byte_order.h"
+#include "formats/files/text.h"
 #include "formats/mesh/triangle_mesh.h"
 #include "formats/mesh/words.h"
-#include "formats/text_scan.h"
 
 namespace mdk {
 namespace {

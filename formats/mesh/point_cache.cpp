@@ -14,7 +14,7 @@
 #include "common/base/error.h"
 #include "common/base/parallel.h"
 #include "formats/files/byte_order.h"
-#include "formats/mapped_file.h"
+#include "formats/files/mapped_file.h"
 
 namespace mdk {
 namespace {

@@ -7,12 +7,12 @@
 
 #include "common/base/error.h"
 #include "common/base/parallel.h"
-#include "formats/file_kind.h"
-#include "formats/mapped_file.h"
+#include "formats/files/file_kind.h"
+#include "formats/files/mapped_file.h"
+#include "formats/files/text.h"
 #include "formats/mesh/materials.h"
 #include "formats/mesh/point_cache.h"
 #include "formats/mesh/triangle_mesh.h"
-#include "formats/utf8_text.h"
 
 namespace mdk {
 namespace {

@@ -18,8 +18,8 @@
 #include "formats/files/atomic_file.h"
 #include "formats/files/mapped_file.h"
 #include "preprocess/batch/job_record.h"
-#include "preprocess/tool/memory_limit.h"
 #include "preprocess/tool/files.h"
+#include "preprocess/tool/memory_limit.h"
 #include "preprocess/tool/text.h"
 
 namespace mdk {

@@ -7,8 +7,8 @@
 #include <fstream>
 #include <memory>
 
-#include "preprocess/tool/shared_options.h"
 #include "preprocess/tool/measures.h"
+#include "preprocess/tool/shared_options.h"
 
 namespace mdk {
 namespace {

@@ -16,8 +16,8 @@
 #include <vector>
 
 #include "common/trace/frame_stats.h"
-#include "preprocess/tool/measures.h"
 #include "preprocess/pipeline.h"
+#include "preprocess/tool/measures.h"
 
 namespace mdk {
 

@@ -6,8 +6,8 @@
 #include <nlohmann/json.hpp>
 
 #include "common/base/error.h"
-#include "common/base/text.h"
 #include "common/base/stopwatch.h"
+#include "common/base/text.h"
 #include "formats/mdk/writer.h"
 #include "preprocess/commands/command_line.h"
 #include "preprocess/commands/source.h"

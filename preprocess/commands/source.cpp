@@ -5,10 +5,10 @@
 #include <system_error>
 
 #include "common/base/error.h"
-#include "formats/assimp_reader.h"
+#include "formats/assimp/reader.h"
 #include "formats/files/file_kind.h"
-#include "formats/gltf_reader.h"
-#include "formats/mesh_sequence_reader.h"
+#include "formats/gltf/reader.h"
+#include "formats/mesh/reader.h"
 #include "preprocess/pipeline.h"
 #include "preprocess/tool/text.h"
 

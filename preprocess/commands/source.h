@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "common/base/parallel.h"
-#include "formats/numbered_files.h"
+#include "formats/mesh/numbered_files.h"
 #include "formats/reading.h"
 #include "preprocess/pipeline.h"
 #include "preprocess/tool/command.h"

@@ -11,10 +11,10 @@
 #include "common/math/aabb.h"
 #include "common/math/affine3.h"
 #include "common/math/vec3.h"
-#include "preprocess/simd/point_kernels.h"
 #include "preprocess/boxes/cost.h"
 #include "preprocess/decomposition.h"
 #include "preprocess/pose/pose_table.h"
+#include "preprocess/simd/point_kernels.h"
 
 namespace mdk {
 

@@ -17,8 +17,8 @@
 #include "common/math/affine3.h"
 #include "common/math/vec3.h"
 #include "common/motion/pose_sequence.h"
-#include "preprocess/simd/point_kernels.h"
 #include "preprocess/decomposition.h"
+#include "preprocess/simd/point_kernels.h"
 
 namespace mdk {
 

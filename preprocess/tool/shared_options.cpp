@@ -68,8 +68,7 @@ int parse_threads(std::string_view text) {
 }
 
 MachineLimits::MachineLimits(const MachineOptions& options)
-    : threads_(options.threads),
-      memory_(options.memory_limit_bytes) {
+    : threads_(options.threads), memory_(options.memory_limit_bytes) {
   if (!options.isa.empty()) limit_isa(options.isa);
 }
 

@@ -12,8 +12,8 @@
 #include "common/math/aabb.h"
 #include "common/trace/camera.h"
 #include "common/trace/renderer.h"
-#include "preprocess/tool/memory_limit.h"
 #include "preprocess/tool/command.h"
+#include "preprocess/tool/memory_limit.h"
 #include "preprocess/tool/progress_bar.h"
 
 namespace mdk {

@@ -11,7 +11,7 @@
 #include "assets/ball_motion.h"
 #include "common/base/parallel.h"
 #include "common/math/aabb.h"
-#include "formats/gltf_reader.h"
+#include "formats/gltf/reader.h"
 #include "tests/assets/glb_content.h"
 #include "tests/assets/mesh_topology.h"
 

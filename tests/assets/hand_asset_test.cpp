@@ -10,7 +10,7 @@
 #include <string>
 
 #include "common/base/parallel.h"
-#include "formats/gltf_reader.h"
+#include "formats/gltf/reader.h"
 #include "tests/assets/glb_content.h"
 #include "tests/assets/mesh_topology.h"
 

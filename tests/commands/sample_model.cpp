@@ -1,6 +1,6 @@
 #include "tests/commands/sample_model.h"
 
-#include "formats/gltf_reader.h"
+#include "formats/gltf/reader.h"
 #include "preprocess/pipeline.h"
 #include "tests/commands/sample_mesh.h"
 #include "tests/formats/temp_folder.h"

@@ -1,4 +1,6 @@
 // Boxes on the grid of another box: they hold what they are made of, tightly and in order.
+#include "common/math/aabb.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -7,8 +9,6 @@
 #include <random>
 #include <utility>
 #include <vector>
-
-#include "common/math/aabb.h"
 
 namespace mdk {
 namespace {
@@ -20,18 +20,9 @@ constexpr std::uint32_t kSeed = 20261122;
 std::vector<std::pair<float, float>> frame_sides() {
   constexpr float kMax = std::numeric_limits<float>::max();
   constexpr float kMin = std::numeric_limits<float>::denorm_min();
-  return {{-1, 1},
-          {0, 0},
-          {7, 7},
-          {1, 1 + 0x1p-23f},
-          {1, 1 + 0x1p-18f},
-          {-1e10f, 1e-10f},
-          {-1e-30f, 1e10f},
-          {1e6f, 1e6f + 3},
-          {-2e-6f, 1e-6f},
-          {0, kMin},
-          {-kMax, kMax},
-          {0, kMax},
+  return {{-1, 1},           {0, 0},           {7, 7},           {1, 1 + 0x1p-23f},
+          {1, 1 + 0x1p-18f}, {-1e10f, 1e-10f}, {-1e-30f, 1e10f}, {1e6f, 1e6f + 3},
+          {-2e-6f, 1e-6f},   {0, kMin},        {-kMax, kMax},    {0, kMax},
           {-kMin, 40 * kMin}};
 }
 

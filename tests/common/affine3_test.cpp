@@ -1,11 +1,11 @@
 // The map between two keys: exact where parts turn, bounded where its inverse is singular.
+#include "common/math/affine3.h"
+
 #include <gtest/gtest.h>
 
 #include <limits>
 #include <random>
 #include <vector>
-
-#include "common/math/affine3.h"
 
 namespace mdk {
 namespace {

@@ -1,10 +1,10 @@
-#include "common/motion/posed_mesh.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <random>
 #include <set>
+
+#include "common/motion/posed_mesh.h"
 
 namespace mdk {
 namespace {

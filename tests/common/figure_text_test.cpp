@@ -1,6 +1,6 @@
-#include "common/base/text.h"
-
 #include <gtest/gtest.h>
+
+#include "common/base/text.h"
 
 namespace mdk {
 namespace {

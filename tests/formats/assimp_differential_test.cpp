@@ -11,7 +11,7 @@
 
 #include "common/base/error.h"
 #include "formats/assimp/reader.h"
-#include "formats/file_kind.h"
+#include "formats/files/file_kind.h"
 #include "formats/gltf/reader.h"
 #include "tests/formats/gltf_builder.h"
 #include "tests/formats/sample_data.h"

@@ -1,12 +1,11 @@
 // What comes through Assimp stands where the same motion stands by its formula.
-#include "formats/assimp/reader.h"
-
 #include <gmock/gmock.h>
 
 #include <cmath>
 #include <numbers>
 #include <random>
 
+#include "formats/assimp/reader.h"
 #include "formats/files/file_kind.h"
 #include "formats/files/image_writer.h"
 #include "tests/formats/assimp_samples.h"

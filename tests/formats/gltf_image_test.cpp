@@ -1,5 +1,3 @@
-#include "formats/gltf/images.h"
-
 #include <gmock/gmock.h>
 #include <sys/resource.h>
 #include <zlib.h>
@@ -8,6 +6,8 @@
 #include <span>
 #include <string>
 #include <vector>
+
+#include "formats/gltf/images.h"
 
 namespace mdk::test {
 namespace {

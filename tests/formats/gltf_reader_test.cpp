@@ -1,6 +1,4 @@
 // Geometry and the shape of the result: what becomes a triangle, a vertex, a clip.
-#include "formats/gltf/reader.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -8,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "formats/gltf/reader.h"
 #include "tests/formats/gltf_builder.h"
 #include "tests/formats/gltf_expect.h"
 

@@ -1,8 +1,7 @@
-#include "formats/mesh/reader.h"
-
 #include <gmock/gmock.h>
 
 #include "common/base/parallel.h"
+#include "formats/mesh/reader.h"
 #include "tests/formats/expect_error.h"
 #include "tests/formats/temp_folder.h"
 

@@ -1,11 +1,10 @@
-#include "formats/mesh/materials.h"
-
 #include <gmock/gmock.h>
 
 #include <cmath>
 
 #include "common/base/error.h"
-#include "formats/image_writer.h"
+#include "formats/files/image_writer.h"
+#include "formats/mesh/materials.h"
 #include "formats/mesh/reader.h"
 #include "tests/formats/temp_folder.h"
 

@@ -1,7 +1,6 @@
-#include "formats/mesh/triangle_mesh.h"
-
 #include <gmock/gmock.h>
 
+#include "formats/mesh/triangle_mesh.h"
 #include "tests/formats/expect_error.h"
 #include "tests/formats/temp_folder.h"
 

@@ -1,9 +1,8 @@
-#include "formats/mesh/triangle_mesh.h"
-
 #include <gmock/gmock.h>
 
 #include <limits>
 
+#include "formats/mesh/triangle_mesh.h"
 #include "tests/formats/expect_error.h"
 #include "tests/formats/ply_builder.h"
 #include "tests/formats/temp_folder.h"
@@ -192,7 +191,8 @@ TEST(PlyReader, AnyCutOrFlippedByteIsReadOrRefusedInOneSentence) {
 
 TEST(PlyReader, AFileThatIsNotThereIsAnIoError) {
   const TempFolder folder;
-  expect_error(ErrorCode::kIo, "none.ply", [&] { read_mesh(folder.file("none.ply"), ObjContent::kShape); });
+  expect_error(ErrorCode::kIo, "none.ply",
+               [&] { read_mesh(folder.file("none.ply"), ObjContent::kShape); });
 }
 
 }  // namespace

@@ -1,5 +1,3 @@
-#include "formats/mesh/point_cache.h"
-
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -7,6 +5,7 @@
 #include <limits>
 #include <numeric>
 
+#include "formats/mesh/point_cache.h"
 #include "tests/formats/expect_error.h"
 #include "tests/formats/point_cache_builder.h"
 #include "tests/formats/temp_folder.h"

@@ -1,8 +1,8 @@
 // glTF, text and binary, through the whole reader.
 #include <numeric>
 
+#include "formats/files/image_writer.h"
 #include "formats/gltf/reader.h"
-#include "formats/image_writer.h"
 #include "tests/formats/compressed_gltf.h"
 #include "tests/formats/gltf_builder.h"
 #include "tests/fuzz/fuzz_target.h"

@@ -4,8 +4,8 @@
 #include <numeric>
 #include <stdexcept>
 
+#include "formats/files/image_writer.h"
 #include "formats/gltf/images.h"
-#include "formats/image_writer.h"
 #include "tests/fuzz/fuzz_target.h"
 
 namespace mdk::test {

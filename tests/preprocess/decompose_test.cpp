@@ -53,8 +53,8 @@ void expect_sound(const ModelStorage& m, const PoseSequence& source) {
     for (std::uint32_t t = cluster.first_triangle + 1; t < next; ++t)
       EXPECT_LT(m.source_triangles[t - 1], m.source_triangles[t]);
     for (std::uint32_t s = 0; s < segments; ++s) {
-      EXPECT_EQ(validate(m.view().tree_view(m.fuzzy_trees[s * clusters + c]), cluster.first_triangle,
-                         next),
+      EXPECT_EQ(validate(m.view().tree_view(m.fuzzy_trees[s * clusters + c]),
+                         cluster.first_triangle, next),
                 "");
       for (const Aabb& box : m.view().cluster_fuzzy_boxes(s, c)) {
         EXPECT_FALSE(box.empty());

@@ -4,8 +4,8 @@
 
 #include <numeric>
 
-#include "common/trace/renderer.h"
 #include "common/trace/heat_map.h"
+#include "common/trace/renderer.h"
 #include "tests/viewer/waving_bar.h"
 #include "viewer/state/camera.h"
 #include "viewer/state/clusters.h"

@@ -34,8 +34,6 @@ struct ShadedMesh {
 struct SurfaceOptions {
   bool facing = true, normals = false, barycentrics = false;
 };
-using SurfaceOptions = SurfaceOptions;  // moved; until its users say so themselves
-
 /// One value per pixel of a tile, at j * kTileSide + i; without meaning where nothing was hit or it
 /// was not asked for.
 struct alignas(64) SurfaceTile {
