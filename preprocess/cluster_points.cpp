@@ -58,7 +58,7 @@ FitMoments row_moments(const SecondMoments& source, const double (&cross)[3][3],
 /// `position`: of a vertex in a row.
 template <class Position>
 ClusterPoints gathered(const ClusterMembers& members, std::uint32_t cluster, std::uint32_t rows,
-                       const ScratchFolder& scratch, const Position& position) {
+                       const ScratchSpace& scratch, const Position& position) {
   const std::uint32_t first = members.vertex_begin[cluster];
   const std::uint32_t count = members.vertex_begin[cluster + 1] - first;
   ClusterPoints points;
@@ -105,7 +105,7 @@ ClusterPoints gather_points(const PoseTable& table, const ClusterMembers& member
 ClusterPoints gather_points(const PoseSequence& sequence, const ClusterMembers& members,
                             std::uint32_t cluster, double unit) {
   const double per_unit = 1 / unit;
-  const ScratchFolder scratch = sequence.positions.get_allocator().folder();
+  const ScratchSpace scratch = sequence.positions.get_allocator().space();
   return gathered(
       members, cluster, sequence.key_count(), scratch, [&](std::uint32_t key, std::uint32_t v) {
         return to_double(sequence.positions[std::size_t{key} * sequence.vertex_count + v]) *

@@ -18,8 +18,8 @@ namespace mdk {
 struct SourceOptions {
   std::string clips = "all";
   std::string fps = "30";
-  bool skeleton = false;       ///< what ReadOptions::skeleton says; no option of the command line
-  ScratchFolder scratch = {};  ///< what ReadOptions::scratch says; likewise
+  bool skeleton = false;      ///< what ReadOptions::skeleton says; no option of the command line
+  ScratchSpace scratch = {};  ///< what ReadOptions::scratch says; likewise
 };
 void add_source_options(CLI::App& command, SourceOptions& options);
 
