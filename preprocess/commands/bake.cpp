@@ -225,7 +225,7 @@ void run_bake(const BakeArguments& arguments, CommandContext& context) {
   const Source source_files = find_source(arguments.inputs);
   keep_inputs(arguments, source_files.files.files);
   check_places(arguments);
-  const ScratchFolder scratch(std::filesystem::path(arguments.output).parent_path().string(),
+  const ScratchSpace scratch(std::filesystem::path(arguments.output).parent_path().string(),
                               min_scratch_bytes(limits.memory()));
   const LoopCheck interrupts = context.interrupts.defer();
 
