@@ -226,7 +226,7 @@ void run_bake(const BakeArguments& arguments, CommandContext& context) {
   keep_inputs(arguments, source_files.files.files);
   check_places(arguments);
   const ScratchSpace scratch(std::filesystem::path(arguments.output).parent_path().string(),
-                              min_scratch_bytes(limits.memory()));
+                             min_scratch_bytes(limits.memory()));
   const LoopCheck interrupts = context.interrupts.defer();
 
   BakeOutcome outcome{joined_inputs(arguments), arguments.output, {}, {}, 0, 0, 0};
