@@ -31,6 +31,12 @@ std::span<const ShadingInfo> shading_table() {
   return kTable;
 }
 
+std::string_view shading_id(ShadingMode mode) {
+  for (const ShadingInfo& row : shading_table())
+    if (row.mode == mode) return row.id;
+  return {};
+}
+
 ShadingMode find_shading(std::string_view id) {
   std::string known;
   for (const ShadingInfo& row : shading_table()) {

@@ -37,6 +37,9 @@ std::span<const ShadingInfo> shading_table();
 /// The mode with this id; throws Error (kUsage) with the ids there are.
 ShadingMode find_shading(std::string_view id);
 
+/// The id of a mode, as on the command line.
+std::string_view shading_id(ShadingMode mode);
+
 /// A colour for a cluster (linear RGB): neighbours in number are far apart in hue.
 Vec3f cluster_color(std::uint32_t cluster);
 

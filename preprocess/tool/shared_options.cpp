@@ -165,12 +165,6 @@ Camera choose_camera(const ViewOptions& options, const Aabb& bounds) {
   return fit_camera(bounds, static_cast<double>(options.size.width) / options.size.height);
 }
 
-std::string_view shading_id(ShadingMode mode) {
-  for (const ShadingInfo& row : shading_table())
-    if (row.mode == mode) return row.id;
-  return "";
-}
-
 std::string parse_technique(std::string_view text) { return std::string(find_technique(text).id); }
 
 std::vector<std::string> parse_techniques(std::string_view text) {

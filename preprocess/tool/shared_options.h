@@ -78,9 +78,6 @@ std::uint32_t parse_occlusion_rays(std::string_view text);
 /// The camera that was asked for, or one that shows all of `bounds`.
 Camera choose_camera(const ViewOptions& options, const Aabb& bounds);
 
-/// As on the command line.
-std::string_view shading_id(ShadingMode mode);
-
 /// The id itself, of a technique that there is. Throws Error (kUsage).
 std::string parse_technique(std::string_view text);
 

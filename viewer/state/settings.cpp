@@ -27,12 +27,6 @@ std::size_t technique_row(std::string_view id) {
   return static_cast<std::size_t>(&find_technique(id) - technique_table().data());
 }
 
-std::string_view shading_id(ShadingMode mode) {
-  for (const ShadingInfo& info : shading_table())
-    if (info.mode == mode) return info.id;
-  return {};
-}
-
 std::span<const PanelTabInfo> panel_tab_table() { return kTabs; }
 
 PanelTab find_panel_tab(std::string_view id) {

@@ -13,7 +13,6 @@ namespace mdk {
 
 /// Row of technique_table(). Throws Error (kUsage) for an unknown id.
 std::size_t technique_row(std::string_view id);
-std::string_view shading_id(ShadingMode mode);
 
 enum class ColorScheme { kDark, kLight };
 
