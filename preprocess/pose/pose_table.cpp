@@ -85,11 +85,15 @@ std::vector<float> mean_row(const PosePoints& points, std::size_t keys) {
 }  // namespace
 
 PointArrays PointArrays::part(std::size_t begin, std::size_t count) const {
-  const auto some = [&](const std::vector<float>& a) {
-    const auto first = a.begin() + static_cast<std::ptrdiff_t>(begin);
-    return std::vector<float>(first, first + static_cast<std::ptrdiff_t>(count));
+  const auto copy = [&](const ScratchList<float>& from, ScratchList<float>& to) {
+    const auto first = from.begin() + static_cast<std::ptrdiff_t>(begin);
+    to.assign(first, first + static_cast<std::ptrdiff_t>(count));
   };
-  return {some(x), some(y), some(z)};
+  PointArrays result;
+  copy(x, result.x);
+  copy(y, result.y);
+  copy(z, result.z);
+  return result;
 }
 
 Aabbd pose_box(std::span<const Vec3f> pose) {
