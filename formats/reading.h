@@ -16,7 +16,7 @@ struct ReadOptions {
   bool skeleton = false;           ///< keep what the rig's bones hang on; then no bones are joined
   std::size_t most_pose_bytes = std::size_t{16}
                                 << 30;  ///< of glTF: what unfolds to more is refused
-  ScratchFolder scratch = {};           ///< where the positions stand
+  ScratchSpace scratch = {};            ///< where the positions stand
 };
 
 struct ReadResult {

@@ -42,7 +42,7 @@ void* map_memory(std::size_t bytes) {
 
 }  // namespace
 
-struct ScratchFolder::State {
+struct ScratchSpace::State {
   std::string folder;
   std::size_t min_bytes = 0;
   std::mutex mutex;
@@ -64,7 +64,7 @@ struct ScratchFolder::State {
   }
 };
 
-ScratchFolder::ScratchFolder(const std::string& folder, std::uint64_t min_bytes) {
+ScratchSpace::ScratchSpace(const std::string& folder, std::uint64_t min_bytes) {
   std::error_code problem;
   const auto whole = std::filesystem::absolute(folder.empty() ? "." : folder, problem);
   if (problem || min_bytes == 0) return;
@@ -73,13 +73,13 @@ ScratchFolder::ScratchFolder(const std::string& folder, std::uint64_t min_bytes)
   state_->min_bytes = min_bytes;
 }
 
-std::uint64_t ScratchFolder::peak_bytes() const {
+std::uint64_t ScratchSpace::peak_bytes() const {
   if (!state_) return 0;
   const std::lock_guard lock(state_->mutex);
   return state_->peak_bytes;
 }
 
-void* ScratchFolder::allocate(std::size_t bytes) const {
+void* ScratchSpace::allocate(std::size_t bytes) const {
   if (!state_ || bytes < state_->min_bytes) return ::operator new(bytes);
   void* const start = map_file(state_->folder, bytes);
   if (!start) return map_memory(bytes);
@@ -87,7 +87,7 @@ void* ScratchFolder::allocate(std::size_t bytes) const {
   return start;
 }
 
-void ScratchFolder::free(void* memory, std::size_t bytes) const noexcept {
+void ScratchSpace::free(void* memory, std::size_t bytes) const noexcept {
   if (!state_ || bytes < state_->min_bytes) {
     ::operator delete(memory);
   } else {

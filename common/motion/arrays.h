@@ -40,8 +40,12 @@ class ArrayCounts {
   std::uint64_t operator[](Count count) const { return values_[static_cast<std::size_t>(count)]; }
 
  private:
-  std::uint64_t values_[9] = {1};  ///< of kOne
+  std::uint64_t values_[static_cast<std::size_t>(Count::kRuns) + 1] = {1};  ///< of kOne first
 };
+
+inline constexpr std::uint64_t kMaxCount =
+    (std::uint64_t{1} << 30) - 1;  // so that 3 T fits 32 bits
+inline constexpr std::uint64_t kMaxLinks = std::numeric_limits<std::uint32_t>::max();
 
 /// How many elements an array has, once the arrays before it have as many as they must.
 struct CountRule {
@@ -55,6 +59,8 @@ struct CountRule {
   Count a = Count::kOne, b = Count::kOne;
   std::uint64_t more = 0, max = 0;
 };
+
+namespace count_rules {
 
 constexpr CountRule exactly(Count a, Count b = Count::kOne) {
   return {.kind = CountRule::Kind::kExactly, .a = a, .b = b};
@@ -70,7 +76,7 @@ constexpr CountRule per_key() { return {.kind = CountRule::Kind::kPerKey}; }
 constexpr CountRule between(std::uint64_t min, std::uint64_t max) {
   return {.kind = CountRule::Kind::kRange, .more = min, .max = max};
 }
-
+/// At least one.
 constexpr CountRule at_most(Count a) {
   return {.kind = CountRule::Kind::kRange,
           .a = a,
@@ -78,13 +84,11 @@ constexpr CountRule at_most(Count a) {
           .max = std::numeric_limits<std::uint64_t>::max()};
 }
 
-inline constexpr std::uint64_t kMaxCount =
-    (std::uint64_t{1} << 30) - 1;  // so that 3 T fits 32 bits
-inline constexpr std::uint64_t kMaxLinks = std::numeric_limits<std::uint32_t>::max();
-
 /// As many as there may be of things that have numbers, at least `min`.
 constexpr CountRule some(std::uint64_t min = 1) { return between(min, kMaxCount); }
 constexpr CountRule any() { return between(0, std::numeric_limits<std::uint64_t>::max()); }
+
+}  // namespace count_rules
 
 /// Which arrays stand or fall together.
 enum class ModelPart {

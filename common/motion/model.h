@@ -114,6 +114,7 @@ struct ModelLists {
   template <class Visit, class... Models>
   static void for_each_array(Visit&& visit, Models&... models) {
     using enum Count;
+    using namespace count_rules;
     visit(array_row("TIME", "key_times", some()), models.key_times...);
     visit(array_row("CLUS", "clusters", some()), models.clusters...);
     visit(array_row("SEGM", "segments", at_most(kKeys)), models.segments...);

@@ -79,6 +79,7 @@ struct AppearanceLists {
   template <class Visit, class... Looks>
   static void for_each_array(Visit&& visit, Looks&... looks) {
     using enum Count;
+    using namespace count_rules;
     visit(array_row("MATL", "materials", some()), looks.materials...);
     visit(array_row("TMAT", "triangle_materials", exactly(kTriangles)),
           looks.triangle_materials...);

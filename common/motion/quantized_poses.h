@@ -51,6 +51,7 @@ struct QuantizedLists {
   template <class Visit, class... Poses>
   static void for_each_array(Visit&& visit, Poses&... poses) {
     using enum Count;
+    using namespace count_rules;
     constexpr ModelPart kPart = ModelPart::kQuantized;
     visit(array_row("QERR", "quantization_error", exactly(kOne), kPart), poses.error...);
     visit(array_row("QRUN", "first_vertex", some(2), kPart), poses.first_vertex...);

@@ -65,6 +65,7 @@ struct RigLists {
   template <class Visit, class... Rigs>
   static void for_each_array(Visit&& visit, Rigs&... rigs) {
     using enum Count;
+    using namespace count_rules;
     constexpr ModelPart kPart = ModelPart::kRig;
     visit(array_row("BONE", "bone_maps", per_key(), kPart), rigs.bone_maps...);
     visit(array_row("TGTW", "target_weights", per_key(), kPart), rigs.target_weights...);
@@ -158,6 +159,7 @@ struct SkeletonLists {
   /// See RigLists.
   template <class Visit, class... Skeletons>
   static void for_each_array(Visit&& visit, Skeletons&... skeletons) {
+    using namespace count_rules;
     constexpr ModelPart kPart = ModelPart::kSkeleton;
     visit(array_row("JNTS", "joints", any(), kPart), skeletons.joints...);
     visit(array_row("JNAM", "joint_names", any(), kPart), skeletons.names...);

@@ -1,8 +1,6 @@
 // Checks in an order in which each one may rely on those before it: counts first, then what indexes
 // by them. Each returns the first fault as a sentence that begins with the name of an array, or
 // nothing.
-#include "formats/mdk/checks.h"
-
 #include <cmath>
 #include <cstdint>
 #include <initializer_list>
@@ -13,6 +11,7 @@
 
 #include "common/structures/kd_tree.h"
 #include "formats/files/text.h"
+#include "formats/mdk/mdk_file.h"
 
 namespace mdk {
 namespace {

@@ -90,9 +90,9 @@ static_assert(offsetof(QuantizedBlock, bits) == 60 && offsetof(QuantizedBlock, f
 static_assert(sizeof(MorphOffset) == 16 && offsetof(MorphOffset, offset) == 4);
 
 /// What stands in sections in another form than in the model; all else is Model::for_each_array.
-inline constexpr ModelArray kModel = array_row("MODL", "model", exactly(Count::kOne));
-inline constexpr ModelArray kClips = array_row("CLIP", "clips", some());
-inline constexpr ModelArray kClipNames = array_row("NAME", "clip_names", any());
+inline constexpr ModelArray kModel = array_row("MODL", "model", count_rules::exactly(Count::kOne));
+inline constexpr ModelArray kClips = array_row("CLIP", "clips", count_rules::some());
+inline constexpr ModelArray kClipNames = array_row("NAME", "clip_names", count_rules::any());
 
 constexpr std::uint64_t align_up(std::uint64_t offset) {
   return (offset + kAlignment - 1) / kAlignment * kAlignment;

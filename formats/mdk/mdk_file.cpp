@@ -6,7 +6,6 @@
 
 #include "common/base/error.h"
 #include "formats/files/mapped_file.h"
-#include "formats/mdk/checks.h"
 #include "formats/mdk/layout.h"
 
 namespace mdk {

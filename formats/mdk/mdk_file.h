@@ -32,6 +32,13 @@ struct MdkSectionInfo {
   std::uint64_t bytes = 0;
 };
 
+/// Whether a model may be traced without asking again: all that docs/file-format.md demands of
+/// counts, ranges, links and numbers. MdkFile asks it about files from outside, write_mdk about our
+/// own work. Empty, or the first thing that is wrong ("clusters: cluster 3 does not start where the
+/// last one ended"). Does not look at positions, texture coordinates, colours or texels. Cost: one
+/// pass over everything else.
+std::string find_inconsistency(const Model& model);
+
 class MdkFile {
  public:
   /// Maps and checks the file. Cost: a pass over the tables and links; positions and texels are not

@@ -18,7 +18,7 @@ struct PointCache {
 struct PointCacheOptions {
   double fps = 30;                 ///< frames per second, where the file counts frames (.pc2)
   std::uint32_t vertex_count = 0;  ///< of the mesh that is moved
-  ScratchFolder scratch = {};      ///< where the positions stand
+  ScratchSpace scratch = {};       ///< where the positions stand
 };
 
 /// POINTCACHE2 version 1 (little-endian; frames `rate` apart, at `fps`) or, for any other start,

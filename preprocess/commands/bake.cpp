@@ -225,8 +225,8 @@ void run_bake(const BakeArguments& arguments, CommandContext& context) {
   const Source source_files = find_source(arguments.inputs);
   keep_inputs(arguments, source_files.files.files);
   check_places(arguments);
-  const ScratchFolder scratch(std::filesystem::path(arguments.output).parent_path().string(),
-                              min_scratch_bytes(limits.memory()));
+  const ScratchSpace scratch(std::filesystem::path(arguments.output).parent_path().string(),
+                             min_scratch_bytes(limits.memory()));
   const LoopCheck interrupts = context.interrupts.defer();
 
   BakeOutcome outcome{joined_inputs(arguments), arguments.output, {}, {}, 0, 0, 0};

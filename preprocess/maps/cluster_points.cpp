@@ -9,7 +9,7 @@ namespace {
 std::size_t padded(std::size_t n) { return (n + kSumLanes - 1) / kSumLanes * kSumLanes; }
 
 ClusterPoints empty_points(std::uint32_t rows, std::size_t vertices,
-                           const ScratchFolder& scratch = {}) {
+                           const ScratchSpace& scratch = {}) {
   ClusterPoints points(scratch);
   points.row_count = rows;
   points.vertex_count = static_cast<std::uint32_t>(vertices);
@@ -22,7 +22,7 @@ ClusterPoints empty_points(std::uint32_t rows, std::size_t vertices,
 /// `uses`: of each vertex; `position`: of a vertex in a row.
 template <class Position>
 ClusterPoints centred(std::uint32_t rows, std::span<const std::uint32_t> uses,
-                      const ScratchFolder& scratch, const Position& position) {
+                      const ScratchSpace& scratch, const Position& position) {
   ClusterPoints points = empty_points(rows, uses.size(), scratch);
   points.weights.assign(points.stride, 0.0f);
   double weight = 0;
@@ -47,7 +47,7 @@ ClusterPoints centred(std::uint32_t rows, std::span<const std::uint32_t> uses,
 /// `position`: of a vertex of the mesh in a row.
 template <class Position>
 ClusterPoints centred_cluster(std::uint32_t rows, const ClusterMembers& members,
-                              std::uint32_t cluster, const ScratchFolder& scratch,
+                              std::uint32_t cluster, const ScratchSpace& scratch,
                               const Position& position) {
   const std::span<const std::uint32_t> vertices = members.vertices_of(cluster);
   const std::uint32_t first = members.vertex_begin[cluster];
@@ -82,7 +82,7 @@ ClusterPoints gather_points(const PoseTable& table, const ClusterMembers& member
 ClusterPoints gather_points(const PoseSequence& sequence, const ClusterMembers& members,
                             std::uint32_t cluster, double unit) {
   const double per_unit = 1 / unit;
-  const ScratchFolder scratch = sequence.positions.get_allocator().folder();
+  const ScratchSpace scratch = sequence.positions.get_allocator().space();
   return centred_cluster(sequence.key_count(), members, cluster, scratch,
                          [&](std::uint32_t key, std::uint32_t v) {
                            return to_double(sequence.pose(key)[v]) * per_unit;

@@ -147,7 +147,7 @@ class Quantizer {
         runs_(owned_runs(members, sequence.vertex_count)),
         maps_(local_from_world),
         clusters_(members.cluster_count()) {
-    poses_.words = ScratchList<std::uint32_t>(sequence.positions.get_allocator().folder());
+    poses_.words = ScratchList<std::uint32_t>(sequence.positions.get_allocator().space());
     poses_.first_vertex = {0};
     poses_.rest_positions.resize(sequence.vertex_count);
     for (const Run& run : runs_) {

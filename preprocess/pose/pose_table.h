@@ -27,7 +27,7 @@ struct PointArrays {
   ScratchList<float> x, y, z;  ///< of a long sequence, where its positions stand
 
   PointArrays() = default;
-  explicit PointArrays(const ScratchFolder& scratch) : x(scratch), y(scratch), z(scratch) {}
+  explicit PointArrays(const ScratchSpace& scratch) : x(scratch), y(scratch), z(scratch) {}
 
   void resize(std::size_t size) {
     for (ScratchList<float>* a : {&x, &y, &z}) a->resize(size, 0.0f);

@@ -1,4 +1,4 @@
-// Large lists in files: what they hold, what they leave, and that each list goes by the folder that
+// Large lists in files: what they hold, what they leave, and that each list goes by the space that
 // it was given.
 #include "common/base/scratch.h"
 
@@ -23,7 +23,7 @@ TEST(Scratch, LargeListsStandInFilesThatHaveNoNameAndSmallOnesDoNot) {
   const TempFolder folder;
   ScratchList<int> kept;
   {
-    const ScratchFolder scratch(folder.path(), kBlock);
+    const ScratchSpace scratch(folder.path(), kBlock);
     const ScratchList<int> small(kBlock / sizeof(int) - 1, scratch);
     EXPECT_EQ(scratch.peak_bytes(), 0u);
     kept = ScratchList<int>(scratch);
@@ -35,9 +35,9 @@ TEST(Scratch, LargeListsStandInFilesThatHaveNoNameAndSmallOnesDoNot) {
   for (std::size_t i = 0; i < kept.size(); ++i) ASSERT_EQ(kept[i], 7 + static_cast<int>(i));
 }
 
-TEST(Scratch, AListGoesByTheFolderThatItWasGivenAndTakesItAlong) {
+TEST(Scratch, AListGoesByTheSpaceThatItWasGivenAndTakesItAlong) {
   const TempFolder folder;
-  const ScratchFolder scratch(folder.path(), kBlock);
+  const ScratchSpace scratch(folder.path(), kBlock);
   const ScratchList<char> elsewhere(4 * kBlock);
   EXPECT_EQ(scratch.peak_bytes(), 0u) << "another list has nothing to do with it";
   ScratchList<char> list(2 * kBlock, 'a', scratch);
@@ -48,7 +48,7 @@ TEST(Scratch, AListGoesByTheFolderThatItWasGivenAndTakesItAlong) {
   EXPECT_EQ(scratch.peak_bytes(), 4 * kBlock);
   EXPECT_EQ(copy, moved);
   moved = elsewhere;
-  EXPECT_EQ(moved.get_allocator().folder(), ScratchFolder());
+  EXPECT_EQ(moved.get_allocator().space(), ScratchSpace());
 }
 
 /// Lets this process have no more private memory than it has now, and a little.
@@ -71,7 +71,7 @@ TEST(Scratch, TheyDoNotCountAsMemoryAndAFolderThatIsNotThereGivesNone) {
   if (std::string(MDK_SANITIZE) != "") GTEST_SKIP() << "a sanitizer takes more than the limit";
   const TempFolder folder;
   const auto take = [](const std::string& place) {
-    const ScratchFolder scratch(place, kBlock);
+    const ScratchSpace scratch(place, kBlock);
     const NoMoreMemory limit;
     try {
       const ScratchList<char> large(64 * kBlock, scratch);

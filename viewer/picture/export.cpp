@@ -160,7 +160,7 @@ std::optional<ExportResult> SequenceExport::take_result() {
 std::string SequenceExport::render(const ExportOrder& order) {
   const MdkFile& file = *order.picture.file;
   std::string path = file.path();
-  std::optional<ScratchFolder> scratch;
+  std::optional<TemporaryFolder> scratch;
   if (is_no_file(path)) {
     path = scratch.emplace().file("model.mdk");
     AtomicFile copy(path);

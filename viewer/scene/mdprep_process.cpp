@@ -142,17 +142,17 @@ void MdprepProcess::send(int signal_number) {
   if (pid_ > 0) ::kill(pid_, signal_number);
 }
 
-ScratchFolder::ScratchFolder() : path_((fs::temp_directory_path() / "mdview-XXXXXX").string()) {
+TemporaryFolder::TemporaryFolder() : path_((fs::temp_directory_path() / "mdview-XXXXXX").string()) {
   if (!::mkdtemp(path_.data()))
     throw Error(ErrorCode::kIo, path_ + ": cannot be made: " + std::strerror(errno));
 }
 
-ScratchFolder::~ScratchFolder() {
+TemporaryFolder::~TemporaryFolder() {
   std::error_code ignored;
   fs::remove_all(path_, ignored);
 }
 
-std::string ScratchFolder::file(const std::string& name) const {
+std::string TemporaryFolder::file(const std::string& name) const {
   return (fs::path(path_) / name).string();
 }
 

@@ -1,5 +1,5 @@
 // MdprepProcess: mdprep at work in a process of its own: no file, however bad, can end the viewer,
-// and work can be dropped at any moment. ScratchFolder: for files that only the two of them know.
+// and work can be dropped at any moment. TemporaryFolder: for files that only the two of them know.
 #pragma once
 
 #include <sys/types.h>
@@ -53,13 +53,13 @@ class MdprepProcess {
 std::optional<MdprepProgress> parse_mdprep_progress(std::string_view line);
 
 /// A new folder for temporary files, taken away at the end.
-class ScratchFolder {
+class TemporaryFolder {
  public:
   /// Throws Error (kIo) where it cannot be made.
-  ScratchFolder();
-  ~ScratchFolder();
-  ScratchFolder(const ScratchFolder&) = delete;
-  ScratchFolder& operator=(const ScratchFolder&) = delete;
+  TemporaryFolder();
+  ~TemporaryFolder();
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
 
   std::string file(const std::string& name) const;
 

@@ -17,7 +17,7 @@ std::shared_ptr<const MdkFile> open_baked(const std::string& path) {
   auto file = std::make_shared<const MdkFile>(path);  // errors name this one
   if (file->file_bytes() > kMaxCopiedBytes) return file;
   try {
-    const ScratchFolder folder;
+    const TemporaryFolder folder;
     const std::string copy = folder.file(fs::path(path).filename().string());
     fs::copy_file(path, copy);
     return std::make_shared<const MdkFile>(copy);
@@ -93,7 +93,7 @@ std::shared_ptr<const MdkFile> SceneLoader::open(const std::vector<std::string>&
 }
 
 std::shared_ptr<const MdkFile> SceneLoader::bake(const std::vector<std::string>& paths) {
-  const ScratchFolder folder;
+  const TemporaryFolder folder;
   const std::string baked = folder.file(fs::path(paths.front()).stem().string() + ".mdk");
   std::vector<std::string> arguments = {"-o", baked, "--"};
   arguments.insert(arguments.end(), paths.begin(), paths.end());

@@ -1,6 +1,5 @@
 // Every rule of docs/file-format.md about a model's content, its poses and its skeleton: one fault
 // each, found and named.
-#include "formats/mdk/checks.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
