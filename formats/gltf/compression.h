@@ -9,25 +9,26 @@
 #include <utility>
 
 #include "formats/gltf/document.h"
-#include "formats/gltf/properties.h"
+#include "formats/gltf/schema.h"
 
 namespace mdk::gltf {
 
 class JsonObject;
 
-/// Lists in `properties` what is compressed, while they are read. Throws Error: kBadInput (a
+/// Lists in `schema` what is compressed, while the rest is checked. Throws Error: kBadInput (a
 /// property is wrong, sizes that the compressed bytes cannot hold, or what this build has no
 /// decoder for and no plain copy of), kOverLimit (decodes to over 4 GiB).
-class CompressionReader {
+class CompressionCheck {
  public:
-  explicit CompressionReader(Properties& properties) : properties_(properties) {}
+  explicit CompressionCheck(Schema& schema) : schema_(schema) {}
 
   /// Whether a buffer has no data, because views that decode to it are compressed elsewhere.
   bool is_empty_buffer(const JsonObject& buffer) const;
   /// The last of the views so far; all buffers are known.
   void add_view(const JsonObject& view);
   /// All accessors are known.
-  void add_primitive(const JsonObject& primitive, const JsonObject& attributes);
+  void add_primitive(const JsonObject& o, const JsonObject& attributes, std::size_t mesh,
+                     std::size_t number);
 
  private:
   ByteRange meshopt_range(const JsonObject& extension) const;
@@ -35,7 +36,7 @@ class CompressionReader {
   void claim(std::size_t accessor, std::pair<std::size_t, std::size_t> data, const JsonObject& o);
   void require_plain_copy(const JsonObject& primitive, const JsonObject& attributes) const;
 
-  Properties& properties_;
+  Schema& schema_;
   std::map<std::size_t, std::pair<std::size_t, std::size_t>> claimed_;  ///< by accessor: its data
   std::size_t decoded_bytes_ = 0;
 };

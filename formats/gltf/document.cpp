@@ -1,13 +1,19 @@
-// From bytes to a document: the properties are read first; then buffers, what is compressed in
-// them, and what accessors and images point at.
+// Everything that tinygltf hands over is turned into checked structs here, and what is compressed
+// is decoded. The schema check before it has settled types and indices.
 #include "formats/gltf/document.h"
 
+#include <tiny_gltf.h>
+
+#include <algorithm>
+#include <cmath>
 #include <map>
 #include <utility>
 
 #include "common/base/error.h"
 #include "formats/gltf/compression.h"
-#include "formats/gltf/properties.h"
+#include "formats/gltf/links.h"
+#include "formats/gltf/parse.h"
+#include "formats/gltf/schema.h"
 
 namespace mdk::gltf {
 namespace {
@@ -15,51 +21,33 @@ namespace {
 // An accessor without bytes is free to claim any length, so its length has a limit of its own.
 constexpr std::size_t kMaxZeroElements = std::size_t{1} << 24;
 
-/// Gives a document whose properties are read its bytes.
-class BytesLoader {
+class Converter {
  public:
-  BytesLoader(const Properties& properties, Document& document, ReadResult& result)
-      : properties_(properties), document_(document), result_(result) {}
+  Converter(tinygltf::Model& model, const Schema& schema, Document& document)
+      : model_(model), schema_(schema), document_(document) {}
 
-  void load(std::span<const unsigned char> binary_chunk) {
-    for (const BufferSource& buffer : properties_.buffers)
-      document_.buffers.push_back(read_buffer(buffer, binary_chunk));
-    for (const MeshoptView& view : properties_.meshopt_views) {
-      document_.decoded.push_back(decode_meshopt(view, range_bytes(view.data)));
-      if (document_.decoded.back().empty())
-        fail(document_, "buffer view", view.view, "has broken meshopt data");
-      decoded_views_[view.view] = document_.decoded.back();
-    }
-    for (std::size_t i = 0; i < document_.accessors.size(); ++i) find_elements(i);
-    for (const DracoPrimitive& primitive : properties_.draco_primitives)
-      decode_draco(primitive, range_bytes(primitive.data), document_);
-    for (std::size_t i = 0; i < document_.images.size(); ++i) find_image(i);
-    require_index_lists();
+  void run() {
+    for (tinygltf::Buffer& buffer : model_.buffers)
+      document_.buffers.push_back(std::move(buffer.data));
+    decode_views();
+    for (std::size_t i = 0; i < model_.accessors.size(); ++i) convert_accessor(i);
+    for (std::size_t i = 0; i < model_.meshes.size(); ++i) convert_mesh(i);
+    decode_primitives();
+    convert_nodes();
+    for (const tinygltf::Skin& skin : model_.skins)
+      document_.skins.push_back({skin.joints, skin.inverseBindMatrices});
+    for (std::size_t i = 0; i < model_.animations.size(); ++i) convert_animation(i);
+    for (tinygltf::Image& image : model_.images) convert_image(image);
+    for (const tinygltf::Material& material : model_.materials) convert_material(material);
+    check_links(document_);
   }
 
  private:
-  Bytes read_buffer(const BufferSource& buffer, std::span<const unsigned char> binary_chunk) {
-    const std::size_t number = document_.buffers.size();
-    if (buffer.is_empty) return {};
-    if (buffer.uri.empty()) {
-      if (buffer.bytes > binary_chunk.size())
-        fail(document_, "buffer", number, "has no uri, and no binary chunk holds its bytes");
-      return Bytes(binary_chunk.begin(),
-                   binary_chunk.begin() + static_cast<std::ptrdiff_t>(buffer.bytes));
-    }
-    if (std::optional<Bytes> bytes = data_uri_bytes(buffer.uri)) {
-      if (bytes->size() != buffer.bytes)
-        fail(document_, "buffer", number, "has a data URI that does not decode to its byteLength");
-      return std::move(*bytes);
-    }
-    const std::string file = resolve_uri(document_.path, buffer.uri);
-    Bytes bytes = read_whole_file(file);
-    result_.dependencies.push_back(file);
-    if (bytes.size() < buffer.bytes)
-      throw bad_input(file, "holds " + std::to_string(bytes.size()) + " bytes where " +
-                                std::to_string(buffer.bytes) + " are needed; it may be cut short");
-    bytes.resize(buffer.bytes);
-    return bytes;
+  std::span<const unsigned char> view_bytes(int view) const {
+    const auto decoded = decoded_views_.find(static_cast<std::size_t>(view));
+    if (decoded != decoded_views_.end()) return decoded->second;
+    const tinygltf::BufferView& v = entry(model_.bufferViews, view);
+    return range_bytes({static_cast<std::size_t>(v.buffer), v.byteOffset, v.byteLength});
   }
 
   std::span<const unsigned char> range_bytes(const ByteRange& range) const {
@@ -67,147 +55,269 @@ class BytesLoader {
         .subspan(range.offset, range.size);
   }
 
-  std::span<const unsigned char> view_bytes(int view) const {
-    const auto decoded = decoded_views_.find(static_cast<std::size_t>(view));
-    if (decoded != decoded_views_.end()) return decoded->second;
-    return range_bytes(entry(properties_.views, view).range);
+  void decode_views() {
+    for (const MeshoptView& view : schema_.meshopt_views) {
+      document_.decoded.push_back(decode_meshopt(view, range_bytes(view.data)));
+      if (document_.decoded.back().empty())
+        fail(document_, "buffer view", view.view, "has broken meshopt data");
+      decoded_views_[view.view] = document_.decoded.back();
+    }
   }
 
-  void find_elements(std::size_t i) {
-    const AccessorSource& source = properties_.accessors[i];
-    Accessor& a = document_.accessors[i];
+  /// Their index lists were hidden from tinygltf, which refuses those without a buffer view.
+  void decode_primitives() {
+    for (const DracoPrimitive& primitive : schema_.draco_primitives) {
+      document_.meshes[primitive.mesh].primitives[primitive.primitive].indices =
+          static_cast<int>(primitive.indices);
+      decode_draco(primitive, range_bytes(primitive.data), document_);
+    }
+  }
+
+  ComponentType component_type(int type, std::size_t accessor) const {
+    switch (type) {
+      case TINYGLTF_COMPONENT_TYPE_BYTE:
+        return ComponentType::kInt8;
+      case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
+        return ComponentType::kUint8;
+      case TINYGLTF_COMPONENT_TYPE_SHORT:
+        return ComponentType::kInt16;
+      case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
+        return ComponentType::kUint16;
+      case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
+        return ComponentType::kUint32;
+      case TINYGLTF_COMPONENT_TYPE_FLOAT:
+        return ComponentType::kFloat32;
+      default:
+        fail(document_, "accessor", accessor, "has an unknown componentType");
+    }
+  }
+
+  void convert_accessor(std::size_t i) {
+    const tinygltf::Accessor& from = model_.accessors[i];
+    Accessor a;
+    a.count = from.count;
+    a.type = component_type(from.componentType, i);
+    a.components = tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(from.type));
+    a.normalized = from.normalized;
     const std::size_t element = a.element_bytes();
     a.stride = element;
-    if (source.elements.view != kNone) {
-      const std::span<const unsigned char> bytes = view_bytes(source.elements.view);
-      const std::size_t offset = source.elements.offset;
-      const std::size_t stride = entry(properties_.views, source.elements.view).stride;
+    if (from.bufferView >= 0) {
+      const std::span<const unsigned char> bytes = view_bytes(from.bufferView);
+      const std::size_t stride = entry(model_.bufferViews, from.bufferView).byteStride;
       if (stride != 0) a.stride = stride;
       if (a.stride < element)
         fail(document_, "accessor", i, "has elements wider than their stride");
-      if (offset > bytes.size() || element > bytes.size() - offset ||
-          a.count - 1 > (bytes.size() - offset - element) / a.stride)
+      if (from.byteOffset > bytes.size() || element > bytes.size() - from.byteOffset ||
+          a.count - 1 > (bytes.size() - from.byteOffset - element) / a.stride)
         fail(document_, "accessor", i, "reaches past its buffer view");
-      a.data = bytes.data() + offset;
+      a.data = bytes.data() + from.byteOffset;
     } else if (a.count > kMaxZeroElements) {
       fail(document_, "accessor", i, "has no data for " + std::to_string(a.count) + " elements");
     }
-    if (a.sparse_count == 0) return;
-    a.sparse_indices = sparse_part(i, source.sparse_indices, component_bytes(a.sparse_index_type));
-    a.sparse_values = sparse_part(i, source.sparse_values, element);
+    if (from.sparse.isSparse) convert_sparse(from, i, a);
+    document_.accessors.push_back(a);
   }
 
-  const unsigned char* sparse_part(std::size_t accessor, const ElementSource& source,
-                                   std::size_t width) const {
-    const std::span<const unsigned char> bytes = view_bytes(source.view);
-    const std::size_t count = document_.accessors[accessor].sparse_count;
-    if (source.offset > bytes.size() || count > (bytes.size() - source.offset) / width)
-      fail(document_, "accessor", accessor, "has sparse data that reaches past its buffer view");
-    return bytes.data() + source.offset;
+  void convert_sparse(const tinygltf::Accessor& from, std::size_t i, Accessor& a) const {
+    a.sparse_count = static_cast<std::size_t>(from.sparse.count);
+    a.sparse_index_type = component_type(from.sparse.indices.componentType, i);
+    if (a.sparse_count > a.count)
+      fail(document_, "accessor", i, "replaces more elements than it has");
+    if (!is_unsigned(a.sparse_index_type))
+      fail(document_, "accessor", i, "has sparse indices that are not unsigned integers");
+    const auto part = [&](int view, int offset, std::size_t width) {
+      const std::span<const unsigned char> bytes = view_bytes(view);
+      const auto start = static_cast<std::size_t>(offset);
+      if (start > bytes.size() || a.sparse_count > (bytes.size() - start) / width)
+        fail(document_, "accessor", i, "has sparse data that reaches past its buffer view");
+      return bytes.data() + start;
+    };
+    a.sparse_indices = part(from.sparse.indices.bufferView, from.sparse.indices.byteOffset,
+                            component_bytes(a.sparse_index_type));
+    a.sparse_values =
+        part(from.sparse.values.bufferView, from.sparse.values.byteOffset, a.element_bytes());
   }
 
-  void find_image(std::size_t i) {
-    ImageSource& image = document_.images[i];
-    if (properties_.image_views[i] != kNone) {
-      image.bytes = view_bytes(properties_.image_views[i]);
-    } else if (std::optional<Bytes> bytes = data_uri_bytes(image.uri)) {
-      if (bytes->empty()) fail(document_, "image", i, "has a data URI that cannot be decoded");
-      image.bytes = document_.decoded.emplace_back(std::move(*bytes));
+  void convert_mesh(std::size_t m) {
+    const tinygltf::Mesh& from = model_.meshes[m];
+    Mesh mesh;
+    mesh.weights = from.weights;
+    for (const tinygltf::Primitive& p : from.primitives) {
+      mesh.primitives.push_back(convert_primitive(p, m));
+      if (from.weights.empty()) mesh.weights.resize(mesh.primitives[0].target_offsets.size(), 0.0);
     }
+    document_.meshes.push_back(std::move(mesh));
   }
 
-  void require_index_lists() const {
-    for (std::size_t m = 0; m < document_.meshes.size(); ++m)
-      for (const Primitive& p : document_.meshes[m].primitives)
-        if (p.indices != kNone && !entry(document_.accessors, p.indices).data)
-          fail(document_, "mesh", m, "has an index list without data");
+  Primitive convert_primitive(const tinygltf::Primitive& from, std::size_t mesh) const {
+    const auto role = [](const std::map<std::string, int>& attributes, const std::string& name) {
+      const auto it = attributes.find(name);
+      return it == attributes.end() ? kNone : it->second;
+    };
+    const auto sets = [&](const std::string& name) {
+      std::vector<int> all;
+      for (int a; (a = role(from.attributes, name + std::to_string(all.size()))) != kNone;)
+        all.push_back(a);
+      return all;
+    };
+    Primitive p;
+    p.mode = static_cast<PrimitiveMode>(from.mode);
+    p.indices = from.indices;
+    p.material = from.material;
+    p.positions = role(from.attributes, "POSITION");
+    p.normals = role(from.attributes, "NORMAL");
+    p.colors = role(from.attributes, "COLOR_0");
+    p.texcoords = sets("TEXCOORD_");
+    p.joints = sets("JOINTS_");
+    p.weights = sets("WEIGHTS_");
+    if (p.joints.size() != p.weights.size())
+      fail(document_, "mesh", mesh, "has joints without weights or weights without joints");
+    for (const auto& target : from.targets) p.target_offsets.push_back(role(target, "POSITION"));
+    return p;
   }
 
-  const Properties& properties_;
+  void convert_nodes() {
+    for (std::size_t i = 0; i < model_.nodes.size(); ++i) {
+      const tinygltf::Node& from = model_.nodes[i];
+      Node node;
+      node.name = from.name;
+      node.children = from.children;
+      node.mesh = from.mesh;
+      node.skin = from.skin;
+      node.weights = from.weights;
+      if (node.mesh != kNone && node.weights.empty())
+        node.weights = entry(document_.meshes, node.mesh).weights;
+      const auto vector = [](const std::vector<double>& v) { return Vec3d{v[0], v[1], v[2]}; };
+      const std::vector<double>& q = from.rotation;
+      if (!from.translation.empty()) node.translation = vector(from.translation);
+      if (!from.scale.empty()) node.scale = vector(from.scale);
+      if (!q.empty()) node.rotation = normalized(Quaternion{q[0], q[1], q[2], q[3]});
+      if (!from.matrix.empty()) convert_matrix(from.matrix, i, node);
+      document_.nodes.push_back(std::move(node));
+    }
+    order_nodes(document_);
+    find_visible_nodes(document_, scene_roots());
+  }
+
+  void convert_matrix(const std::vector<double>& columns, std::size_t number, Node& node) const {
+    constexpr double kTolerance = 1e-4;
+    const double last_row[4] = {columns[3], columns[7], columns[11], columns[15] - 1};
+    for (double entry : last_row)
+      if (!(std::abs(entry) < kTolerance))
+        fail(document_, "node", number, "has a matrix with perspective");
+    node.has_matrix = true;
+    for (std::size_t row = 0; row < 3; ++row)
+      for (std::size_t column = 0; column < 4; ++column)
+        node.matrix.m[row][column] = columns[column * 4 + row];
+  }
+
+  std::vector<int> scene_roots() const {
+    if (!model_.scenes.empty()) return entry(model_.scenes, std::max(0, model_.defaultScene)).nodes;
+    std::vector<int> roots;
+    for (std::size_t i = 0; i < document_.nodes.size(); ++i)
+      if (document_.nodes[i].parent == kNone) roots.push_back(static_cast<int>(i));
+    return roots;
+  }
+
+  /// Channels that move nothing known (an extension's, or without a node) are dropped.
+  void convert_animation(std::size_t number) {
+    const tinygltf::Animation& from = model_.animations[number];
+    Animation animation{from.name, {}};
+    for (const tinygltf::AnimationChannel& c : from.channels) {
+      const tinygltf::AnimationSampler& sampler = entry(from.samplers, c.sampler);
+      Channel channel;
+      channel.node = c.target_node;
+      channel.input = sampler.input;
+      channel.output = sampler.output;
+      if (c.target_path == "translation")
+        channel.path = TrackPath::kTranslation;
+      else if (c.target_path == "rotation")
+        channel.path = TrackPath::kRotation;
+      else if (c.target_path == "scale")
+        channel.path = TrackPath::kScale;
+      else if (c.target_path == "weights")
+        channel.path = TrackPath::kWeights;
+      else
+        continue;
+      if (sampler.interpolation == "STEP")
+        channel.interpolation = Interpolation::kStep;
+      else if (sampler.interpolation == "CUBICSPLINE")
+        channel.interpolation = Interpolation::kCubicSpline;
+      else if (sampler.interpolation != "LINEAR")
+        fail(document_, "animation", number, "has an unknown interpolation");
+      if (channel.node != kNone) animation.channels.push_back(channel);
+    }
+    document_.animations.push_back(std::move(animation));
+  }
+
+  void convert_image(tinygltf::Image& from) {
+    ImageSource image;
+    image.uri = from.uri;
+    if (from.bufferView >= 0) image.bytes = view_bytes(from.bufferView);
+    if (!from.image.empty()) {
+      document_.decoded.push_back(std::move(from.image));
+      image.bytes = document_.decoded.back();
+    }
+    document_.images.push_back(std::move(image));
+  }
+
+  void convert_material(const tinygltf::Material& from) {
+    MaterialSource material;
+    const tinygltf::PbrMetallicRoughness& pbr = from.pbrMetallicRoughness;
+    for (std::size_t i = 0; i < 4; ++i)
+      material.material.base_color[i] =
+          static_cast<float>(std::clamp(pbr.baseColorFactor[i], 0.0, 1.0));
+    if (from.extensions.contains("KHR_materials_unlit")) material.material.flags = kMaterialUnlit;
+    if (pbr.baseColorTexture.index >= 0) {
+      const tinygltf::Texture& texture = entry(model_.textures, pbr.baseColorTexture.index);
+      material.image = texture.source;
+      material.texcoord_set = pbr.baseColorTexture.texCoord;
+      if (texture.sampler >= 0) {
+        const auto& sampler = entry(model_.samplers, texture.sampler);
+        material.material.wrap_u = wrap(sampler.wrapS);
+        material.material.wrap_v = wrap(sampler.wrapT);
+      }
+      convert_texture_transform(pbr.baseColorTexture, material);
+    }
+    document_.materials.push_back(material);
+  }
+
+  static TextureWrap wrap(int mode) {
+    if (mode == TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE) return TextureWrap::kClamp;
+    if (mode == TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT) return TextureWrap::kMirror;
+    return TextureWrap::kRepeat;
+  }
+
+  /// Offset after rotation after scale. v points down, so counter-clockwise is (u, v) -> (v, -u).
+  static void convert_texture_transform(const tinygltf::TextureInfo& info,
+                                        MaterialSource& material) {
+    const auto it = info.extensions.find("KHR_texture_transform");
+    if (it == info.extensions.end()) return;
+    const tinygltf::Value& transform = it->second;
+    const auto pair_or = [&](const char* key, double fallback) {
+      std::pair<double, double> p{fallback, fallback};
+      if (transform.Has(key)) {
+        p.first = transform.Get(key).Get(0).GetNumberAsDouble();
+        p.second = transform.Get(key).Get(1).GetNumberAsDouble();
+      }
+      return p;
+    };
+    const auto [offset_u, offset_v] = pair_or("offset", 0);
+    const auto [scale_u, scale_v] = pair_or("scale", 1);
+    const double angle =
+        transform.Has("rotation") ? transform.Get("rotation").GetNumberAsDouble() : 0.0;
+    const double c = std::cos(angle), s = std::sin(angle);
+    material.u_row = {c * scale_u, s * scale_v, offset_u};
+    material.v_row = {-s * scale_u, c * scale_v, offset_v};
+    if (transform.Has("texCoord"))
+      material.texcoord_set = transform.Get("texCoord").GetNumberAsInt();
+  }
+
+  tinygltf::Model& model_;
+  const Schema& schema_;
   Document& document_;
-  ReadResult& result_;
   std::map<std::size_t, std::span<const unsigned char>> decoded_views_;
 };
-
-void check_skin(const Document& document, std::size_t s) {
-  const Skin& skin = document.skins[s];
-  if (skin.inverse_bind_matrices == kNone) return;
-  const Accessor& a = entry(document.accessors, skin.inverse_bind_matrices);
-  if (a.components != 16 || a.type != ComponentType::kFloat32)
-    fail(document, "skin", s, "has inverse bind matrices that are not 4x4 floats");
-  if (a.count < skin.joints.size())
-    fail(document, "skin", s, "has fewer inverse bind matrices than joints");
-}
-
-void check_mesh(const Document& document, std::size_t m) {
-  const Mesh& mesh = document.meshes[m];
-  for (const Primitive& primitive : mesh.primitives)
-    if (primitive.target_offsets.size() != mesh.weights.size())
-      fail(document, "mesh", m, "has primitives or weights that differ in morph targets");
-}
-
-void check_node(const Document& document, std::size_t n) {
-  const Node& node = document.nodes[n];
-  if (node.mesh == kNone) return;
-  const Mesh& mesh = entry(document.meshes, node.mesh);
-  if (node.weights.size() != mesh.weights.size())
-    fail(document, "node", n, "has more or fewer weights than its mesh has morph targets");
-}
-
-void check_animation(const Document& document, std::size_t a) {
-  for (const Channel& channel : document.animations[a].channels) {
-    const Node& node = entry(document.nodes, channel.node);
-    if (node.has_matrix && channel.path != TrackPath::kWeights)
-      fail(document, "animation", a,
-           "moves node " + std::to_string(channel.node) +
-               ", which has a matrix; export it with translation, rotation and scale");
-  }
-}
-
-/// Sets every node's parent and `node_order`. No recursion.
-void order_nodes(Document& document) {
-  std::vector<Node>& nodes = document.nodes;
-  for (std::size_t n = 0; n < nodes.size(); ++n) {
-    for (int child : nodes[n].children) {
-      int& parent = entry(nodes, child).parent;
-      if (parent != kNone)
-        fail(document, "node", static_cast<std::size_t>(child), "has two parents");
-      parent = static_cast<int>(n);
-    }
-  }
-  std::vector<int>& order = document.node_order;
-  for (std::size_t n = 0; n < nodes.size(); ++n)
-    if (nodes[n].parent == kNone) order.push_back(static_cast<int>(n));
-  for (std::size_t next = 0; next < order.size(); ++next)
-    for (int child : entry(nodes, order[next]).children) order.push_back(child);
-  // With one parent each, what no root leads to is a ring or hangs on one.
-  if (order.size() != nodes.size())
-    throw bad_input(document.path, "the nodes form a ring: one is its own ancestor");
-}
-
-/// The nodes with a mesh that `scene` shows; without a scene, all of them.
-std::vector<int> visible_nodes(const Document& document,
-                               const std::optional<std::vector<int>>& scene) {
-  std::vector<char> visible(document.nodes.size(), scene ? 0 : 1);
-  if (scene)
-    for (int root : *scene) entry(visible, root) = 1;
-  for (int n : document.node_order) {
-    const int parent = entry(document.nodes, n).parent;
-    if (parent != kNone && entry(visible, parent)) entry(visible, n) = 1;
-  }
-  std::vector<int> nodes;
-  for (std::size_t n = 0; n < document.nodes.size(); ++n)
-    if (visible[n] && document.nodes[n].mesh != kNone) nodes.push_back(static_cast<int>(n));
-  return nodes;
-}
-
-/// Throws Error (kBadInput) where skins, morph weights or animated nodes contradict one another.
-void check_links(const Document& document) {
-  for (std::size_t s = 0; s < document.skins.size(); ++s) check_skin(document, s);
-  for (std::size_t m = 0; m < document.meshes.size(); ++m) check_mesh(document, m);
-  for (std::size_t n = 0; n < document.nodes.size(); ++n) check_node(document, n);
-  for (std::size_t a = 0; a < document.animations.size(); ++a) check_animation(document, a);
-}
 
 }  // namespace
 
@@ -219,12 +329,9 @@ void fail(const Document& document, const char* what, std::size_t number,
 Document parse_document(const std::string& path, const Bytes& bytes, ReadResult& result) {
   Document document;
   document.path = path;
-  const FileParts parts = file_parts(path, bytes);
-  const Properties properties = read_properties(parts.json, document, result);
-  BytesLoader(properties, document, result).load(parts.binary);
-  order_nodes(document);
-  document.visible_nodes = visible_nodes(document, properties.scene);
-  check_links(document);
+  const Schema schema = check_schema(path, json_text(path, bytes), result.notes);
+  tinygltf::Model model = parse_gltf(path, bytes, schema, result.dependencies);
+  Converter(model, schema, document).run();
   return document;
 }
 

@@ -1,4 +1,4 @@
-// A glTF file as plain, checked structs: what the rest of the reader works on.
+// A glTF file as plain, checked structs: what the rest of the reader works on. tinygltf ends here.
 #pragma once
 
 #include <cstddef>

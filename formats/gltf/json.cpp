@@ -11,7 +11,7 @@ namespace mdk::gltf {
 namespace {
 
 constexpr int kMaxNesting = 256;
-constexpr std::int64_t kMaxInt = std::numeric_limits<std::int32_t>::max();
+constexpr std::size_t kMaxInt = std::numeric_limits<std::int32_t>::max();
 
 std::string quote(const std::string& key) { return "\"" + key + "\""; }
 
@@ -76,24 +76,13 @@ std::string JsonObject::string(const char* key, Need need) const {
   return m ? m->get<std::string>() : std::string();
 }
 
-std::string JsonObject::string_or(const char* key, const char* fallback) const {
-  const Json* m = member(key, Need::kOptional, &Json::is_string, "a string");
-  return m ? m->get<std::string>() : fallback;
-}
-
-std::string JsonObject::name() const {
-  const auto it = value_.find("name");
-  return it != value_.end() && it->is_string() ? it->get<std::string>() : std::string();
-}
-
 bool JsonObject::boolean(const char* key) const {
   const Json* m = member(key, Need::kOptional, &Json::is_boolean, "a boolean");
   return m && m->get<bool>();
 }
 
-double JsonObject::number_or(const char* key, double fallback) const {
-  const Json* m = member(key, Need::kOptional, &Json::is_number, "a number");
-  return m ? m->get<double>() : fallback;
+void JsonObject::number(const char* key) const {
+  member(key, Need::kOptional, &Json::is_number, "a number");
 }
 
 std::size_t JsonObject::size(const char* key, Need need) const {
@@ -104,10 +93,13 @@ std::size_t JsonObject::size(const char* key, Need need) const {
   return m ? m->get<std::size_t>() : 0;
 }
 
-int JsonObject::small_size(const char* key, int fallback) const {
-  const std::size_t value = size(key, Need::kOptional);
-  if (value > static_cast<std::size_t>(kMaxInt)) fail("has a " + quote(key) + " that is too large");
-  return has(key) ? static_cast<int>(value) : fallback;
+void JsonObject::small_size(const char* key, Need need) const {
+  if (size(key, need) > kMaxInt) fail("has a " + quote(key) + " that is too large");
+}
+
+bool JsonObject::is_small_size(const char* key) const {
+  const Json& value = value_.at(key);
+  return value.is_number_unsigned() && value.get<std::uint64_t>() <= kMaxInt;
 }
 
 int JsonObject::index_value(const Json& value, const std::string& key, const char* list) const {
@@ -120,28 +112,30 @@ int JsonObject::index_value(const Json& value, const std::string& key, const cha
 }
 
 int JsonObject::index(const char* key, const char* list, Need need) const {
-  if (!has(key) && need == Need::kOptional) return -1;
-  return index_value(*member(key, need, &Json::is_primitive, "an index"), key, list);
+  const auto it = value_.find(key);
+  if (it != value_.end()) return index_value(*it, key, list);
+  if (need == Need::kRequired) fail("has no " + quote(key));
+  return -1;
 }
 
-std::vector<int> JsonObject::indices(const char* key, const char* list, Need need) const {
-  std::vector<int> all;
-  if (const Json* values = member(key, need, &Json::is_array, "a list"))
-    for (const Json& value : *values) all.push_back(index_value(value, key, list));
-  return all;
+std::size_t JsonObject::indices(const char* key, const char* list, Need need) const {
+  const Json* values = member(key, need, &Json::is_array, "a list");
+  if (!values) return 0;
+  for (const Json& value : *values) index_value(value, key, list);
+  return values->size();
 }
 
-std::vector<double> JsonObject::numbers(const char* key, std::size_t count) const {
-  std::vector<double> all;
+void JsonObject::numbers(const char* key, std::size_t count) const {
   const Json* values = member(key, Need::kOptional, &Json::is_array, "a list");
-  if (!values) return all;
+  if (!values) return;
   if (count != 0 && values->size() != count)
     fail("has a " + quote(key) + " without " + std::to_string(count) + " numbers");
-  for (const Json& value : *values) {
+  for (const Json& value : *values)
     if (!value.is_number()) fail("has a " + quote(key) + " holding something that is not a number");
-    all.push_back(value.get<double>());
-  }
-  return all;
+}
+
+JsonObject JsonObject::at(std::string place) const {
+  return {file_, root_, std::move(place), value_};
 }
 
 std::optional<JsonObject> JsonObject::object(const char* key, Need need) const {

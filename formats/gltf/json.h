@@ -1,6 +1,6 @@
-// JsonObject: one object of a glTF file's JSON. A property is checked as it is read: it has its
-// type, an index points at something, and what is wrong is said with its place. Nesting is bounded
-// before anything recursive sees the text.
+// JsonObject: one object of a glTF file's JSON, whose properties are checked one after another:
+// each has its type, an index points at something, and what is wrong is said with its place.
+// Nesting is bounded before anything recursive sees the text.
 #pragma once
 
 #include <cstddef>
@@ -32,25 +32,27 @@ class JsonObject {
   const std::string& place() const { return place_; }
   bool has(const char* key) const { return value_.contains(key); }
 
-  std::string string(const char* key, Need need) const;
-  std::string string_or(const char* key, const char* fallback) const;
-  /// "name", where it is a string; anything else is no name.
-  std::string name() const;
-  bool boolean(const char* key) const;  ///< false where it is absent
-  double number_or(const char* key, double fallback) const;
+  std::string string(const char* key, Need need) const;  ///< empty where it is absent
+  bool boolean(const char* key) const;                   ///< false where it is absent
+  void number(const char* key) const;                    ///< where it is there
 
   /// A whole number in [0, 2^53]; 0 where it is absent.
   std::size_t size(const char* key, Need need) const;
-  /// A whole number that an int holds; `fallback` where it is absent.
-  int small_size(const char* key, int fallback) const;
+  /// A whole number that an int holds, because tinygltf keeps it in one.
+  void small_size(const char* key, Need need) const;
+  /// Whether the property, which is there, is one.
+  bool is_small_size(const char* key) const;
 
   /// What numbers an entry of the file's top-level `list`; -1 where it is absent.
   int index(const char* key, const char* list, Need need) const;
-  std::vector<int> indices(const char* key, const char* list, Need need) const;
+  /// How many such numbers there are.
+  std::size_t indices(const char* key, const char* list, Need need) const;
 
-  /// A list of `count` numbers (0: any count); empty where it is absent.
-  std::vector<double> numbers(const char* key, std::size_t count) const;
+  /// A list of `count` numbers (0: any count), where it is there.
+  void numbers(const char* key, std::size_t count) const;
 
+  /// The same object under another place.
+  JsonObject at(std::string place) const;
   /// Its place is that of this object.
   std::optional<JsonObject> object(const char* key, Need need) const;
   std::optional<JsonObject> extension(const char* name) const;

@@ -88,6 +88,10 @@ TEST(GltfMeshopt, ReadsBinaryFilesWithAFallbackThatIsNotThere) {
   const ReadResult result = read_file(write_text(folder, "packed.glb", packed(grid).glb()));
   EXPECT_EQ(turned_triangles(result.sequence), turned_triangles(read_plain(grid)));
   EXPECT_THAT(result.dependencies, testing::SizeIs(1));
+  // What follows the length that the file has by its header is no part of it.
+  const ReadResult longer =
+      read_file(write_text(folder, "longer.glb", packed(grid).glb() + "and more"));
+  EXPECT_EQ(longer.sequence.triangles, result.sequence.triangles);
 }
 
 TEST(GltfMeshopt, FiltersAreUndone) {
@@ -232,7 +236,7 @@ TEST(GltfDraco, WhatDoesNotFitItsAccessorsIsRefused) {
            {"accessors", 1, "\"count\": 54", "\"count\": 51", "other counts"},
            {"accessors", 1, "\"count\": 54", "\"count\": 16000000", "other counts"},
            {"meshes", 0, "{\"POSITION\": 0}}", "{\"POSITION\": 9}}", "other counts"},
-           {"meshes", 0, "{\"POSITION\": 0}}", "{\"POSITION\": -1}}", "usable whole number"},
+           {"meshes", 0, "{\"POSITION\": 0}}", "{\"POSITION\": -1}}", "no whole number"},
            {"meshes", 0, "{\"POSITION\": 0}}", "{\"NORMAL\": 0}}", "none of the primitive's own"},
            {"meshes", 0, "{\"POSITION\": 0}}", "[]}", "not an object"},
            {"meshes", 0, "\"bufferView\": 0", "\"bufferView\": 5", "bufferView"},

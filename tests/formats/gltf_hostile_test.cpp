@@ -325,6 +325,18 @@ TEST(GltfHostile, RefusesABinaryFileCutAtAnyLength) {
   }
 }
 
+TEST(GltfHostile, RefusesABinaryChunkThatReachesPastTheFile) {
+  const std::string whole = whole_file().glb();
+  const std::size_t chunk = whole.find(std::string("BIN\0", 4)) - 4;
+  const TempFolder folder;
+  for (const int more : {4, 8, 12}) {
+    std::string bytes = whole;
+    bytes[chunk] = static_cast<char>(bytes[chunk] + more);
+    const std::string path = write_text(folder, "long.glb", bytes);
+    expect_refused(ErrorCode::kBadInput, {"long.glb", "binary chunk"}, [&] { read_file(path); });
+  }
+}
+
 TEST(GltfHostile, SurvivesAnySingleByteChanged) {
   const std::string whole = whole_file().glb();
   const TempFolder folder;

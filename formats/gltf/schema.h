@@ -1,9 +1,10 @@
-// The properties of a glTF file's JSON, checked, before any of the bytes they promise is read.
+// What a glTF file's JSON must look like before anything else reads it. tinygltf takes a property
+// of the wrong type for an absent one, checks few indices, and recurses without a limit; here every
+// property that is used has its type, every index points at something, and nesting is bounded.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -13,9 +14,11 @@
 namespace mdk::gltf {
 
 struct BufferSource {
-  std::string uri;  ///< as written; empty: the binary chunk of a .glb
+  std::string uri;  ///< as written, still percent-encoded; empty: the binary chunk of a .glb
   std::size_t bytes = 0;
   bool is_empty = false;  ///< stands for what meshopt views decode to, without data
+
+  bool is_file() const { return !is_empty && !uri.empty() && !uri.starts_with("data:"); }
 };
 
 /// Bytes of a buffer; they exist if the buffer is as long as it says.
@@ -23,22 +26,6 @@ struct ByteRange {
   std::size_t buffer = 0;
   std::size_t offset = 0;
   std::size_t size = 0;
-};
-
-struct ViewSource {
-  ByteRange range;
-  std::size_t stride = 0;  ///< 0: elements are tightly packed
-};
-
-/// Where an accessor's numbers stand.
-struct ElementSource {
-  int view = kNone;
-  std::size_t offset = 0;
-};
-
-struct AccessorSource {
-  ElementSource elements;
-  ElementSource sparse_indices, sparse_values;  ///< where the accessor is sparse
 };
 
 enum class MeshoptMode { kAttributes, kTriangles, kIndices };
@@ -63,26 +50,26 @@ struct DracoAttribute {
 /// A primitive with KHR_draco_mesh_compression.
 struct DracoPrimitive {
   std::string place;  ///< "mesh 0, primitive 1"
+  std::size_t mesh = 0, primitive = 0;
   ByteRange data;
   std::size_t indices = 0;  ///< accessor
   std::vector<DracoAttribute> attributes;
 };
 
-struct Properties {
+struct Schema {
   std::vector<BufferSource> buffers;
-  std::vector<ViewSource> views;
-  std::vector<AccessorSource> accessors;  ///< as many as the document's
-  std::vector<int> image_views;           ///< per image of the document; kNone: it has a URI
+  std::vector<ByteRange> views;
+  std::vector<int> accessor_views;  ///< per accessor: where its elements stand, or kNone
   std::vector<MeshoptView> meshopt_views;
   std::vector<DracoPrimitive> draco_primitives;
-  std::optional<std::vector<int>>
-      scene;  ///< roots of the default one; none where no scene is there
+  std::string plain_json;  ///< what knows no compression is to read instead; empty: the file's own
 };
 
-/// Fills in `document` what its path's JSON says of accessors, meshes, nodes, skins, animations,
-/// materials and images, and adds notes to `result`. Afterwards every index is in range, every
-/// buffer view lies inside its buffer's length, and every required extension is known. Throws Error
-/// (kBadInput) naming the place, kOverLimit. Cost: one parse.
-Properties read_properties(std::string_view json, Document& document, ReadResult& result);
+/// Checks the JSON text of `file` (for messages). Afterwards every property that is used has its
+/// type, every index is in range, every buffer view lies inside its buffer's length, and every
+/// required extension is known. Adds a note for each of the others. Throws Error (kBadInput) naming
+/// the place, kOverLimit. Cost: one parse.
+Schema check_schema(const std::string& file, std::string_view json,
+                    std::vector<std::string>& notes);
 
 }  // namespace mdk::gltf
