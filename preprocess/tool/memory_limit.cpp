@@ -18,6 +18,7 @@ namespace mdk {
 namespace {
 
 constexpr std::uint64_t kMinRoom = std::uint64_t{16} << 20;  // to start threads and say a sentence
+constexpr std::uint64_t kLaterCode = std::uint64_t{4} << 20;  // of the program, not yet resident
 
 struct ProcessMemory {
   std::uint64_t program = 0;  ///< bytes: resident pages that files stand behind
@@ -48,7 +49,8 @@ void start_threads() {
 
 MemoryLimit::MemoryLimit(std::uint64_t bytes) : bytes_(bytes) {
   if (bytes == 0) return;
-  const auto [program, data] = process_memory();
+  const auto [resident, data] = process_memory();
+  const std::uint64_t program = resident + kLaterCode;
   if (bytes_ < program + kMinRoom)
     throw Error(ErrorCode::kOverLimit, "--memory-limit " + size_text(bytes) +
                                            ": the program itself needs " +
