@@ -2,7 +2,7 @@
 
 namespace mdk {
 
-KeyPoses::KeyPoses(const Model& model) : model_(&model) {
+KeyPoses::KeyPoses(const ModelView& model) : model_(&model) {
   if (model.poses.kind != PoseKind::kKeyPositions)
     slots_ = std::make_unique<Slot[]>(model.key_count());
 }
@@ -31,7 +31,7 @@ std::size_t KeyPoses::bytes() const {
   return vertices * sizeof(Vec3f);
 }
 
-BoxColumns::BoxColumns(const Model& model)
+BoxColumns::BoxColumns(const ModelView& model)
     : clusters_(model.cluster_count()),
       stride_((clusters_ + kMovingBoxLanes - 1) / kMovingBoxLanes * kMovingBoxLanes),
       columns_(6 * stride_ * model.key_count()) {

@@ -51,7 +51,7 @@ struct ScaledRay {
 
 /// The farthest any point of the model may be from the ray's origin, and what the triangle test
 /// may be off by at that distance.
-double world_slack(const Model& model, const Vec3d& origin) {
+double world_slack(const ModelView& model, const Vec3d& origin) {
   const Vec3d center = to_double(model.bounds.center());
   const double reach = length(center - origin) + static_cast<double>(model.bounds.diagonal());
   return reach * 0x1p-19;
@@ -62,7 +62,7 @@ struct SegmentTrees {
   ClusterTrees trees;
   std::vector<Aabb> bounds;  ///< K, empty for clusters without triangles
 
-  SegmentTrees(const Model& model, std::uint32_t segment)
+  SegmentTrees(const ModelView& model, std::uint32_t segment)
       : trees(build_cluster_trees(model, segment)) {
     for (const WideBvh& tree : trees.trees)
       bounds.push_back(tree.nodes.empty() ? Aabb{} : tree.nodes[0].box());
@@ -87,7 +87,7 @@ class QueryMoment {
 };
 
 struct RayQuery::State {
-  explicit State(const Model& m) : model(m), poses(m), boxes(m) {
+  explicit State(const ModelView& m) : model(m), poses(m), boxes(m) {
     for (std::uint32_t s = 0; s < m.segment_count(); ++s) segments.emplace_back(m, s);
   }
 
@@ -132,13 +132,13 @@ struct RayQuery::State {
     return scaled.usable && trace(scaled, ray.t_max, moment, RayAim::kAny).triangle != kNoHit;
   }
 
-  const Model& model;
+  const ModelView& model;
   KeyPoses poses;
   BoxColumns boxes;
   std::vector<SegmentTrees> segments;
 };
 
-RayQuery::RayQuery(const Model& model) : state_(std::make_unique<State>(model)) {}
+RayQuery::RayQuery(const ModelView& model) : state_(std::make_unique<State>(model)) {}
 RayQuery::~RayQuery() = default;
 
 QueryHit RayQuery::closest_hit(const QueryRay& ray, const KeyInterval& at) const {
@@ -184,7 +184,8 @@ std::size_t RayQuery::structure_bytes() const {
   return bytes;
 }
 
-QueryHit brute_force_closest_hit(const Model& model, const QueryRay& ray, const KeyInterval& at) {
+QueryHit brute_force_closest_hit(const ModelView& model, const QueryRay& ray,
+                                 const KeyInterval& at) {
   PosedMesh mesh(model);
   mesh.set_time(at);
   return brute_force_closest_hit(mesh, ray);
@@ -194,7 +195,7 @@ QueryHit brute_force_closest_hit(const PosedMesh& mesh, const QueryRay& ray) {
   const ScaledRay scaled(ray);
   if (!scaled.usable) return {};
   RayHit hit = scaled.nothing_yet(ray.t_max);
-  const Model& model = mesh.model();
+  const ModelView& model = mesh.model();
   const VertexSource vertices{mesh.positions().data(), mesh.positions().data(), 0};
   TriangleBlock block;
   for (std::uint32_t t = 0; t < model.triangle_count(); ++t) {

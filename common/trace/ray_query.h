@@ -38,7 +38,7 @@ class RayQuery {
   /// Builds one hierarchy per cluster and segment. Cost: O(segments * T log T). Runs in parallel.
   /// Key poses that are not stored as positions are decoded when a ray first asks for them, and
   /// kept: 12 bytes a vertex for every such key.
-  explicit RayQuery(const Model& model);
+  explicit RayQuery(const ModelView& model);
   ~RayQuery();
   RayQuery(const RayQuery&) = delete;
   RayQuery& operator=(const RayQuery&) = delete;
@@ -71,7 +71,8 @@ class RayQuery {
 };
 
 /// The closest hit among all triangles, with no structure at all: what RayQuery is judged by.
-QueryHit brute_force_closest_hit(const Model& model, const QueryRay& ray, const KeyInterval& at);
+QueryHit brute_force_closest_hit(const ModelView& model, const QueryRay& ray,
+                                 const KeyInterval& at);
 /// The same for a mesh that is posed already, by hand or at a moment.
 QueryHit brute_force_closest_hit(const PosedMesh& mesh, const QueryRay& ray);
 

@@ -19,7 +19,7 @@ struct Sweep {
 };
 
 /// From outside the model's bounds towards its middle, from all sides.
-Sweep make_sweep(const mdk::Model& model) {
+Sweep make_sweep(const mdk::ModelView& model) {
   const mdk::Vec3f middle = (model.bounds.lo + model.bounds.hi) * 0.5f;
   const mdk::Vec3f size = model.bounds.hi - model.bounds.lo;
   const float radius = std::sqrt(size.x * size.x + size.y * size.y + size.z * size.z);

@@ -19,7 +19,7 @@ constexpr std::uint32_t kSeed = 5;
 /// Views of a mesh as no one would choose them, each kind in turn.
 class RandomViews {
  public:
-  explicit RandomViews(const Model& model) : model_(model) {}
+  explicit RandomViews(const ModelView& model) : model_(model) {}
 
   FrameRequest next() {
     FrameRequest request;
@@ -94,7 +94,7 @@ class RandomViews {
                        std::uniform_real_distribution<double>(0, 1)(random_) * seconds);
   }
 
-  const Model& model_;
+  const ModelView& model_;
   std::mt19937 random_{kSeed};
   unsigned turn_ = 0;
 };

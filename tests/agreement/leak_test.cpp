@@ -65,7 +65,7 @@ bool is_closed(const PosedMesh& mesh) {
 }
 
 /// Vertices that several clusters share; all where there are none.
-std::vector<std::uint32_t> border_vertices(const Model& model) {
+std::vector<std::uint32_t> border_vertices(const ModelView& model) {
   std::vector<std::uint32_t> owner(model.vertex_count, model.cluster_count()), border;
   std::vector<char> shared(model.vertex_count, 0);
   for (std::uint32_t c = 0; c < model.cluster_count(); ++c)
@@ -84,7 +84,7 @@ std::vector<std::uint32_t> border_vertices(const Model& model) {
 
 class LeakHunt {
  public:
-  explicit LeakHunt(const Model& model) : model_(model), border_(border_vertices(model)) {}
+  explicit LeakHunt(const ModelView& model) : model_(model), border_(border_vertices(model)) {}
 
   /// Shoots `rays` rays from inside, divided among the techniques; how many hit nothing.
   std::uint64_t leaks(std::uint64_t rays) {
@@ -125,12 +125,12 @@ class LeakHunt {
     return std::abs(winding_number(mesh, to_double(request.camera.eye)) - 1) < 1e-3;
   }
 
-  const Model& model_;
+  const ModelView& model_;
   std::vector<std::uint32_t> border_;
   std::mt19937 random_{kSeed};
 };
 
-void expect_no_leaks(const Model& model, const std::string& name) {
+void expect_no_leaks(const ModelView& model, const std::string& name) {
   PosedMesh mesh(model);
   mesh.set_time(at_key(model.rest_key));
   if (!is_closed(mesh)) {
@@ -151,7 +151,7 @@ TEST(Leaks, NoRayLeavesAClosedMeshInMotion) {
   for (const auto& [name, sequence] : scenes) {
     const DecomposeResult baked = decompose(sequence, options, silent);
     EXPECT_GT(baked.model.clusters.size(), 3u) << name;
-    const Model model = baked.model.view();
+    const ModelView model = baked.model.view();
     PosedMesh mesh(model);
     mesh.set_time(at_key(0));
     EXPECT_TRUE(is_closed(mesh)) << name;

@@ -20,7 +20,7 @@ using test::bake;
 using test::ResetIsa;
 
 /// All vertices at a moment.
-std::vector<Vec3f> vertices_at(const Model& model, const KeyInterval& at) {
+std::vector<Vec3f> vertices_at(const ModelView& model, const KeyInterval& at) {
   PosedMesh mesh(model);
   mesh.set_time(at);
   return {mesh.positions().begin(), mesh.positions().end()};
@@ -35,7 +35,7 @@ bool is_same(const QueryHit& a, const QueryHit& b) {
 /// Rays of all kinds: from outside and inside, at vertices and edges, along axes, of odd lengths.
 class RayMaker {
  public:
-  RayMaker(const Model& model, std::uint32_t seed) : model_(model), random_(seed) {}
+  RayMaker(const ModelView& model, std::uint32_t seed) : model_(model), random_(seed) {}
 
   KeyInterval time() {
     const double seconds = model_.clip_seconds(model_.clips[0]);
@@ -73,7 +73,7 @@ class RayMaker {
     }
   }
 
-  const Model& model_;
+  const ModelView& model_;
   std::mt19937 random_;
 };
 
@@ -81,7 +81,7 @@ TEST(RayQuery, GivesBruteForcesHitAtEveryRaysOwnTime) {
   const ResetIsa reset;
   for (auto& [name, sequence] : test::agreement_scenes()) {
     const DecomposeResult baked = bake(std::move(sequence));
-    const Model model = baked.model.view();
+    const ModelView model = baked.model.view();
     const RayQuery query(model);
     RayMaker make(model, 11);
     int hits = 0;
@@ -103,7 +103,7 @@ TEST(RayQuery, GivesBruteForcesHitAtEveryRaysOwnTime) {
 }
 
 /// The formula of the kernel's head comment, written plainly: one triangle at a time.
-QueryHit plain_closest_hit(const Model& model, const QueryRay& ray, const KeyInterval& at) {
+QueryHit plain_closest_hit(const ModelView& model, const QueryRay& ray, const KeyInterval& at) {
   const Vec3d o = to_double(ray.origin), d = to_double(ray.direction);
   const std::vector<Vec3f> vertices = vertices_at(model, at);
   QueryHit best;
@@ -138,7 +138,7 @@ QueryHit plain_closest_hit(const Model& model, const QueryRay& ray, const KeyInt
 
 TEST(RayQuery, BruteForceAgreesWithAPlainLoopOverTriangles) {
   const DecomposeResult baked = bake(test::bending_tube(20, 16, 4));
-  const Model model = baked.model.view();
+  const ModelView model = baked.model.view();
   RayMaker make(model, 5);
   int hits = 0;
   for (int i = 0; i < 500; ++i) {
@@ -155,7 +155,7 @@ TEST(RayQuery, BruteForceAgreesWithAPlainLoopOverTriangles) {
 
 TEST(RayQuery, RangesOfTAreOpenBelowAndClosedAbove) {
   const DecomposeResult baked = bake(test::bending_tube(20, 16, 4));
-  const Model model = baked.model.view();
+  const ModelView model = baked.model.view();
   const RayQuery query(model);
   const KeyInterval at = at_key(1);
   const Vec3f on_mesh = vertices_at(model, at)[model.triangles[40].v[0]];
@@ -175,7 +175,7 @@ TEST(RayQuery, RangesOfTAreOpenBelowAndClosedAbove) {
 TEST(RayQuery, RangesThatBeginBehindTheOriginGiveBruteForcesHit) {
   const ResetIsa reset;
   const DecomposeResult baked = bake(test::bending_tube(20, 16, 4));
-  const Model model = baked.model.view();
+  const ModelView model = baked.model.view();
   const RayQuery query(model);
   RayMaker make(model, 29);
   const float inf = std::numeric_limits<float>::infinity();
@@ -201,7 +201,7 @@ TEST(RayQuery, RangesThatBeginBehindTheOriginGiveBruteForcesHit) {
 
 TEST(RayQuery, AListAtMixedTimesGivesWhatEachRayGivesOnAnyNumberOfThreads) {
   const DecomposeResult baked = bake(test::flying_boxes(12, 6));
-  const Model model = baked.model.view();
+  const ModelView model = baked.model.view();
   const RayQuery query(model);
   RayMaker make(model, 3);
   std::vector<QueryRay> rays;
@@ -227,7 +227,7 @@ TEST(RayQuery, AListAtMixedTimesGivesWhatEachRayGivesOnAnyNumberOfThreads) {
 
 TEST(RayQuery, RaysWithoutDirectionOrSenseHitNothing) {
   const DecomposeResult baked = bake(test::bending_tube(10, 8, 2));
-  const Model model = baked.model.view();
+  const ModelView model = baked.model.view();
   const RayQuery query(model);
   const float nan = std::nanf(""), inf = std::numeric_limits<float>::infinity();
   const Vec3f inside = model.bounds.center();
@@ -239,7 +239,7 @@ TEST(RayQuery, RaysWithoutDirectionOrSenseHitNothing) {
 
 /// Whether a point is inside the closed mesh: by the crossings of rays in three odd directions,
 /// counted with Möller and Trumbore's test in double.
-bool is_inside(const Model& model, const Vec3f& point, const KeyInterval& at) {
+bool is_inside(const ModelView& model, const Vec3f& point, const KeyInterval& at) {
   const Vec3d o = to_double(point);
   const std::vector<Vec3f> vertices = vertices_at(model, at);
   int votes = 0;
@@ -264,7 +264,7 @@ TEST(RayQuery, NoRayLeavesAClosedMeshInMotion) {
   // From the axis of a bent, swelling tube every ray must hit its wall, at every time; most are
   // aimed at vertices and edges, where neighbours meet and clusters part.
   const DecomposeResult baked = bake(test::bending_tube(40, 24, 12));
-  const Model model = baked.model.view();
+  const ModelView model = baked.model.view();
   const RayQuery query(model);
   constexpr std::size_t kRays = 100'000;
   constexpr float kInward = -1;  // the corners run counter-clockwise seen from outside

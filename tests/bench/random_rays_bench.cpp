@@ -59,7 +59,7 @@ std::vector<mdk::QueryRay> random_lines(const mdk::Aabb& box, std::mt19937_64& e
 }
 
 /// Clusters whose world boxes a line that hits the model's box is expected to enter.
-double clusters_entered(const mdk::Model& model, std::uint32_t key, const mdk::Aabb& box) {
+double clusters_entered(const mdk::ModelView& model, std::uint32_t key, const mdk::Aabb& box) {
   double area = 0;
   for (std::size_t c = 0; c < model.cluster_count(); ++c)
     area += model.world_box(key, c).surface_area();
@@ -89,7 +89,7 @@ Cost cost_of(const mdk::RayQuery& query, const std::vector<mdk::QueryRay>& rays,
 
 void measure(const char* path) {
   const mdk::MdkFile file(path);
-  const mdk::Model& model = file.model();
+  const mdk::ModelView& model = file.model();
   const mdk::RayQuery query(model);
   mdk::PosedMesh mesh(model);
   std::mt19937_64 engine(1);

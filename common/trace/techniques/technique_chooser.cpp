@@ -55,7 +55,7 @@ std::string formatted(const char* format, Values... values) {
 
 }  // namespace
 
-TechniqueChooser::TechniqueChooser(const Model& model,
+TechniqueChooser::TechniqueChooser(const ModelView& model,
                                    std::span<const TechniqueCandidate> candidates)
     : model_(model),
       candidates_(candidates),
