@@ -15,6 +15,7 @@
 #include "common/motion/quantized_poses.h"
 #include "common/motion/rig.h"
 #include "common/structures/kd_tree.h"
+#include "mdk/model.h"
 
 namespace mdk {
 
@@ -196,15 +197,6 @@ struct ModelView : ModelLists<ConstSpan> {
 struct ModelStorage : ModelLists<OwnedList, ScratchList> {
   /// Valid while this lives and is not changed.
   ModelView view() const;
-};
-
-/// Where a time lies between keys: pose(t) = key0 + s (key1 - key0). At a key exactly, key0 == key1
-/// and s == 0.
-struct KeyInterval {
-  std::uint32_t key0 = 0, key1 = 0;
-  float s = 0;  ///< in [0, 1)
-
-  bool operator==(const KeyInterval&) const = default;
 };
 
 /// The interval of `clip` (an index) that holds `seconds`; times outside the clip are clamped to

@@ -21,7 +21,6 @@ class KeyPoses {
 
   /// Positions of all vertices at that time. Cost: O(1), but decoding the first time.
   VertexSource at(const KeyInterval& at) const;
-  std::size_t bytes() const;
 
  private:
   struct Slot {
@@ -45,7 +44,6 @@ class BoxColumns {
   /// Boxes that hold the clusters at that time but for rounding, for which a BoxRay gives way.
   /// Valid while this lives.
   MovingBoxes at(const KeyInterval& at) const;
-  std::size_t bytes() const { return columns_.capacity() * sizeof(float); }
 
  private:
   std::size_t clusters_, stride_;

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "common/base/error.h"
+#include "common/motion/model_handle.h"
 #include "formats/files/mapped_file.h"
 #include "formats/mdk/layout.h"
 
@@ -125,6 +126,11 @@ void MdkFile::verify_checksums() const {
                           "it again");
     }
   }
+}
+
+Model Model::load(const std::string& path) {
+  const auto file = std::make_shared<const MdkFile>(path);
+  return ModelHandle::make(file->model(), file);
 }
 
 }  // namespace mdk

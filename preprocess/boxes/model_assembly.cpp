@@ -203,7 +203,7 @@ AssembledModel assemble_model(PoseSequence sequence, Decomposition decomposition
   AssembledModel result;
   ModelStorage& model = result.model;
   model.rest_key = decomposition.growth.rest_key;
-  model.rest_diagonal = pose_box(sequence.pose(model.rest_key)).diagonal();
+  model.rest_diagonal = diagonal(pose_box(sequence.pose(model.rest_key)));
   model.segments = std::move(decomposition.segments);
   model.clusters = cluster_ranges(members);
   model.fuzzy_boxes.reserve(model.segments.size() * sequence.triangles.size());

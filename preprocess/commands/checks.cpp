@@ -159,7 +159,7 @@ void check_tree(const ModelView& model, std::size_t tree_index, CheckResult& lea
 }
 
 std::vector<Camera> cameras_for(const ModelView& model) {
-  const double size = model.bounds.diagonal() > 0 ? model.bounds.diagonal() : 1;
+  const double size = diagonal(model.bounds) > 0 ? diagonal(model.bounds) : 1;
   const Vec3d center = to_double(model.bounds.center());
   Camera close;
   close.target = to_float(center);

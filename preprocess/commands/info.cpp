@@ -75,10 +75,10 @@ KeyAreas tight_area_at(const ModelView& model, std::uint32_t key) {
   for (const Triangle& triangle : model.triangles) {
     Aabb box;
     for (const std::uint32_t v : triangle.v) box.extend(pose[v]);
-    areas.tight += static_cast<double>(box.surface_area());
+    areas.tight += static_cast<double>(surface_area(box));
     whole.extend(box);
   }
-  areas.whole = static_cast<double>(whole.surface_area());
+  areas.whole = static_cast<double>(surface_area(whole));
   return areas;
 }
 

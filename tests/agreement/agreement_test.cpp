@@ -21,7 +21,7 @@ using test::ResetIsa;
 /// From outside, close by, inside, along an axis, through a keyhole, and very wide.
 std::vector<Camera> cameras_for(const Aabb& bounds) {
   const Vec3f center = bounds.center();
-  const float size = std::max(bounds.diagonal(), 1e-12f);
+  const float size = std::max(diagonal(bounds), 1e-12f);
   Camera fit = fit_camera(bounds, 1.0), close = fit, inside = fit, axis = fit, keyhole = fit,
          wide = fit;
   close.eye = center + (fit.eye - center) * 0.6f;

@@ -27,7 +27,7 @@ class RandomViews {
     request.height = 84;
     request.at = moment();
     const Aabb& bounds = model_.bounds;
-    const float size = std::max(bounds.diagonal(), 1e-12f);
+    const float size = std::max(diagonal(bounds), 1e-12f);
     request.camera = fit_camera(bounds, 1.0);
     Camera& camera = request.camera;
     const Vec3f inside = point_inside();

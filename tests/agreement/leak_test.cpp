@@ -115,7 +115,7 @@ class LeakHunt {
     PosedMesh mesh(model_);
     mesh.set_time(request.at);
     const Vec3f target = mesh.positions()[border_[random_() % border_.size()]];
-    const auto reach = static_cast<float>(uniform(0.01, 0.1)) * model_.bounds.diagonal();
+    const auto reach = static_cast<float>(uniform(0.01, 0.1)) * diagonal(model_.bounds);
     const auto any = [&] { return static_cast<float>(uniform(-1, 1)) * reach; };
     request.camera.eye = target + Vec3f{any(), any(), any()};
     request.camera.target = target;

@@ -39,7 +39,7 @@ void take_residuals(const ModelView& model, std::vector<ClusterFacts>& facts) {
 double mean_world_area(const ModelView& model, std::uint32_t cluster) {
   double sum = 0;
   for (std::uint32_t key = 0; key < model.key_count(); ++key)
-    sum += static_cast<double>(model.world_box(key, cluster).surface_area());
+    sum += static_cast<double>(surface_area(model.world_box(key, cluster)));
   return sum / model.key_count();
 }
 

@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "common/trace/ray_query.h"
+#include "common/trace/brute_force.h"
 
 namespace mdk {
 namespace {
@@ -38,7 +38,7 @@ std::optional<PickedTriangle> pick_triangle(const ModelView& model, const Moment
   const QueryRay ray{rays.origin,
                      rays.direction(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f)};
   const QueryHit hit = brute_force_closest_hit(mesh_at(model, moment), ray);
-  if (hit.triangle == kNoHit) return {};
+  if (!hit.is_hit()) return {};
   return PickedTriangle{hit.triangle, cluster_of_triangle(model, hit.triangle), hit.t};
 }
 

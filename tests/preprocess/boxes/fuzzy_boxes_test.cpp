@@ -165,7 +165,7 @@ TEST(FuzzyBoxes, AreAsSmallAsTheTrianglesOfRigidParts) {
   for (std::size_t t = 0; t < boxes.size(); ++t) {
     Aabbd rest;
     for (const std::uint32_t v : mesh.triangles[t].v) rest.extend(mesh.vertices[v]);
-    EXPECT_LT(boxes[t].diagonal(), rest.diagonal() + 2e-5);
+    EXPECT_LT(diagonal(boxes[t]), diagonal(rest) + 2e-5);
   }
 }
 
@@ -219,7 +219,7 @@ TEST(FuzzyBoxes, AreNotMuchLargerThanTheCurvesInThem) {
       }
   const std::vector<Aabb> boxes = first_fuzzy_boxes(storage);
   for (std::uint32_t t = 0; t < model.triangle_count(); ++t) {
-    const double slack = 0.35 * seen[t].diagonal();
+    const double slack = 0.35 * diagonal(seen[t]);
     for (std::size_t axis = 0; axis < 3; ++axis) {
       EXPECT_NEAR(boxes[t].lo[axis], seen[t].lo[axis], slack);
       EXPECT_NEAR(boxes[t].hi[axis], seen[t].hi[axis], slack);

@@ -116,7 +116,7 @@ TEST(BoneClusters, ATriangleGoesToTheBoneWithTheSmallestBox) {
   const std::vector<std::uint32_t> keys = all_keys(s);
   const BoneClusters clusters = assign_to_bones(s, keys, nullptr);
   std::vector<double> model_areas;
-  for (const std::uint32_t key : keys) model_areas.push_back(pose_box(s.pose(key)).surface_area());
+  for (const std::uint32_t key : keys) model_areas.push_back(surface_area(pose_box(s.pose(key))));
   for (std::uint32_t t = 0; t < s.triangles.size(); ++t) {
     double least = INFINITY, own = INFINITY;
     for (const std::uint32_t v : s.triangles[t].v)
