@@ -34,15 +34,14 @@ install(FILES ${MDK_MANUAL_DIR}/mdprep.bash RENAME mdprep COMPONENT tools
   DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
 
 set(MDK_CMAKE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/mdk)
-set_target_properties(mdk_defaults PROPERTIES EXPORT_NAME defaults)
-set_target_properties(mdk_trace PROPERTIES EXPORT_NAME tracing)
-set_target_properties(mdk_formats PROPERTIES EXPORT_NAME formats)
-install(TARGETS mdk_defaults mdk_trace mdk_formats EXPORT mdk
-  ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT dev)
-install(DIRECTORY common DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/mdk COMPONENT dev
+set_target_properties(mdk_core PROPERTIES EXPORT_NAME trace)
+install(TARGETS mdk_core EXPORT mdk ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT dev)
+install(DIRECTORY common/include/mdk DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT dev
   FILES_MATCHING PATTERN "*.h")
-install(FILES formats/mdk/mdk_file.h COMPONENT dev
-  DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/mdk/formats/mdk)
+install(FILES docs/ray-queries.md COMPONENT dev
+  DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/libmdk-dev)
+install(DIRECTORY examples/ray_sweep COMPONENT dev
+  DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/libmdk-dev/examples)
 install(EXPORT mdk NAMESPACE mdk:: FILE mdkTargets.cmake DESTINATION ${MDK_CMAKE_DIR} COMPONENT dev)
 configure_package_config_file(cmake/mdkConfig.cmake.in ${PROJECT_BINARY_DIR}/mdkConfig.cmake
   INSTALL_DESTINATION ${MDK_CMAKE_DIR})

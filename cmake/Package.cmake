@@ -23,10 +23,7 @@ set(CPACK_DEBIAN_DEV_PACKAGE_NAME libmdk-dev)
 set(CPACK_DEBIAN_DEV_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEV_PACKAGE_SHLIBDEPS OFF)
 set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS
-  "libtbb-dev, libhwy-dev, libxxhash-dev, libpng-dev, pkg-config, cmake")
-if(MDK_USES_EMBREE)
-  string(APPEND CPACK_DEBIAN_DEV_PACKAGE_DEPENDS ", libembree-dev")
-endif()
+  "libtbb-dev, libhwy-dev, libxxhash-dev, pkg-config, cmake")
 set(CPACK_DEBIAN_DEV_DESCRIPTION "library to trace rays against animated meshes in .mdk files
  find_package(mdk) gives mdk::trace: load a file, set a time, intersect rays,
  each with its own time if wanted, from many threads.")

@@ -16,15 +16,13 @@ endif()
 # Link against mdk_defaults to get the house rules. A result must depend on the code alone, never
 # on what the compiler chose to fuse: hence no -ffast-math, no -march, and no contraction.
 add_library(mdk_defaults INTERFACE)
-# Whoever uses an installed library gets the last of these, too, and none of our warnings.
 target_include_directories(mdk_defaults INTERFACE
-  $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}> $<INSTALL_INTERFACE:include/mdk>)
+  ${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/common/include)
 target_compile_features(mdk_defaults INTERFACE cxx_std_20)
 target_compile_options(mdk_defaults INTERFACE
-  "$<BUILD_INTERFACE:-Wall;-Wextra;-Wshadow;-Wnon-virtual-dtor;-Woverloaded-virtual>"
-  -ffp-contract=off)
+  -Wall -Wextra -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual -ffp-contract=off)
 if(MDK_WARNINGS_AS_ERRORS)
-  target_compile_options(mdk_defaults INTERFACE $<BUILD_INTERFACE:-Werror>)
+  target_compile_options(mdk_defaults INTERFACE -Werror)
 endif()
 if(MDK_SANITIZE)
   target_compile_options(mdk_defaults INTERFACE

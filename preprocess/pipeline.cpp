@@ -126,7 +126,7 @@ std::optional<QuantizedPoses> quantized(PoseSequence& sequence, const Decomposit
   if (sequence.skeleton || rig_is_smallest(sequence)) return std::nullopt;
   sequence.rig.reset();
   const std::uint32_t rest_key = decomposition.growth.rest_key;
-  const double length = residual_unit(pose_box(sequence.pose(rest_key)).diagonal(), unit);
+  const double length = residual_unit(diagonal(pose_box(sequence.pose(rest_key))), unit);
   return quantize_poses(sequence, decomposition.members, decomposition.maps.local_from_world,
                         {error, length, rest_key});
 }
@@ -218,7 +218,7 @@ DecomposeResult decompose(PoseSequence sequence, const DecomposeOptions& options
   const double decompose_seconds = watch.lap();
 
   DecomposeResult result;
-  result.stats = make_stats(parts, pose_box(sequence.pose(parts.growth.rest_key)).diagonal(), unit);
+  result.stats = make_stats(parts, diagonal(pose_box(sequence.pose(parts.growth.rest_key))), unit);
   ProgressPart building(progress, ends.segmented, 1);
   AssembledModel assembled =
       assemble_model(std::move(sequence), std::move(parts),

@@ -1,5 +1,5 @@
-// Aabb: an axis-aligned box [lo, hi], closed on all sides. The default one is empty. QuantizedBox:
-// one on a grid that spans another box, its frame, in half the memory.
+// What boxes measure and how they are rounded. QuantizedBox: one on a grid that spans another box,
+// its frame, in half the memory.
 #pragma once
 
 #include <algorithm>
@@ -13,46 +13,21 @@
 
 namespace mdk {
 
-template <class T>
-struct BasicAabb {
-  static constexpr T kInf = std::numeric_limits<T>::infinity();
-  Vec3<T> lo{kInf, kInf, kInf};
-  Vec3<T> hi{-kInf, -kInf, -kInf};
-
-  bool empty() const { return !(lo.x <= hi.x && lo.y <= hi.y && lo.z <= hi.z); }
-  Vec3<T> extent() const { return hi - lo; }
-  Vec3<T> center() const { return {mid(lo.x, hi.x), mid(lo.y, hi.y), mid(lo.z, hi.z)}; }
-  T diagonal() const { return empty() ? T(0) : length(extent()); }
-  /// Area of the six sides; 0 for an empty box.
-  T surface_area() const {
-    if (empty()) return T(0);
-    const Vec3<T> e = extent();
-    return T(2) * (e.x * e.y + e.y * e.z + e.z * e.x);
-  }
-  bool contains(const Vec3<T>& p) const {
-    return lo.x <= p.x && p.x <= hi.x && lo.y <= p.y && p.y <= hi.y && lo.z <= p.z && p.z <= hi.z;
-  }
-  bool contains(const BasicAabb& b) const {
-    return b.empty() || (contains(b.lo) && contains(b.hi));
-  }
-
-  void extend(const Vec3<T>& p) {
-    lo = {std::min(lo.x, p.x), std::min(lo.y, p.y), std::min(lo.z, p.z)};
-    hi = {std::max(hi.x, p.x), std::max(hi.y, p.y), std::max(hi.z, p.z)};
-  }
-  void extend(const BasicAabb& b) {
-    lo = {std::min(lo.x, b.lo.x), std::min(lo.y, b.lo.y), std::min(lo.z, b.lo.z)};
-    hi = {std::max(hi.x, b.hi.x), std::max(hi.y, b.hi.y), std::max(hi.z, b.hi.z)};
-  }
-
-  bool operator==(const BasicAabb&) const = default;
-
- private:
-  static T mid(T a, T b) { return a + (b - a) * T(0.5); }
-};
-
-using Aabb = BasicAabb<float>;
 using Aabbd = BasicAabb<double>;
+
+/// From corner to corner; 0 for an empty box.
+template <class T>
+T diagonal(const BasicAabb<T>& box) {
+  return box.empty() ? T(0) : length(box.extent());
+}
+
+/// Area of the six sides; 0 for an empty box.
+template <class T>
+T surface_area(const BasicAabb<T>& box) {
+  if (box.empty()) return T(0);
+  const Vec3<T> e = box.extent();
+  return T(2) * (e.x * e.y + e.y * e.z + e.z * e.x);
+}
 
 template <class T>
 BasicAabb<T> intersection(const BasicAabb<T>& a, const BasicAabb<T>& b) {

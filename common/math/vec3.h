@@ -1,46 +1,14 @@
-// Vec3: three numbers, plain data. Float for what is stored and traced, double for what is fitted.
+// Vec3's products and lengths, and its precision: float for what is stored and traced, double for
+// what is fitted.
 #pragma once
 
 #include <cmath>
-#include <cstddef>
+
+#include "mdk/geometry.h"
 
 namespace mdk {
 
-template <class T>
-struct Vec3 {
-  T x{}, y{}, z{};
-
-  T& operator[](std::size_t i) { return i == 0 ? x : i == 1 ? y : z; }
-  const T& operator[](std::size_t i) const { return i == 0 ? x : i == 1 ? y : z; }
-
-  Vec3& operator+=(const Vec3& b) { return *this = {x + b.x, y + b.y, z + b.z}; }
-
-  bool operator==(const Vec3&) const = default;
-};
-
-using Vec3f = Vec3<float>;
 using Vec3d = Vec3<double>;
-
-template <class T>
-constexpr Vec3<T> operator+(const Vec3<T>& a, const Vec3<T>& b) {
-  return {a.x + b.x, a.y + b.y, a.z + b.z};
-}
-template <class T>
-constexpr Vec3<T> operator-(const Vec3<T>& a, const Vec3<T>& b) {
-  return {a.x - b.x, a.y - b.y, a.z - b.z};
-}
-template <class T>
-constexpr Vec3<T> operator-(const Vec3<T>& a) {
-  return {-a.x, -a.y, -a.z};
-}
-template <class T>
-constexpr Vec3<T> operator*(const Vec3<T>& a, T s) {
-  return {a.x * s, a.y * s, a.z * s};
-}
-template <class T>
-constexpr Vec3<T> operator*(T s, const Vec3<T>& a) {
-  return a * s;
-}
 
 template <class T>
 constexpr T dot(const Vec3<T>& a, const Vec3<T>& b) {

@@ -6,13 +6,13 @@
 
 namespace mdk {
 
-Model ModelStorage::view() const {
-  Model model;
+ModelView ModelStorage::view() const {
+  ModelView model;
   assign_model(model, *this);
   return model;
 }
 
-std::vector<Aabb> Model::cluster_fuzzy_boxes(std::uint32_t segment, std::size_t cluster) const {
+std::vector<Aabb> ModelView::cluster_fuzzy_boxes(std::uint32_t segment, std::size_t cluster) const {
   const Cluster& range = clusters[cluster];
   std::vector<Aabb> boxes(range.triangle_count);
   for (std::size_t i = 0; i < boxes.size(); ++i)
@@ -20,7 +20,7 @@ std::vector<Aabb> Model::cluster_fuzzy_boxes(std::uint32_t segment, std::size_t 
   return boxes;
 }
 
-KeyInterval locate_time(const Model& model, std::uint32_t clip_index, double seconds) {
+KeyInterval locate_time(const ModelView& model, std::uint32_t clip_index, double seconds) {
   const Clip& clip = model.clips[clip_index];
   const auto times = model.key_times.subspan(clip.first_key, clip.key_count);
   const std::uint32_t last = clip.key_count - 1;
@@ -39,14 +39,14 @@ KeyInterval locate_time(const Model& model, std::uint32_t clip_index, double sec
   return {clip.first_key + k0, clip.first_key + k1, s};
 }
 
-std::uint32_t clip_of_key(const Model& model, std::uint32_t key) {
+std::uint32_t clip_of_key(const ModelView& model, std::uint32_t key) {
   const auto after = std::upper_bound(
       model.clips.begin(), model.clips.end(), key,
       [](std::uint32_t value, const Clip& clip) { return value < clip.first_key; });
   return static_cast<std::uint32_t>(after - model.clips.begin()) - 1;
 }
 
-std::uint32_t segment_of(const Model& model, const KeyInterval& at) {
+std::uint32_t segment_of(const ModelView& model, const KeyInterval& at) {
   // The first segment that reaches key1 holds key0, too: the one before ends at key0 or earlier.
   const auto reaches = std::lower_bound(
       model.segments.begin(), model.segments.end(), at.key1,
@@ -54,7 +54,8 @@ std::uint32_t segment_of(const Model& model, const KeyInterval& at) {
   return static_cast<std::uint32_t>(reaches - model.segments.begin());
 }
 
-void decode_pose(const Model& model, std::uint32_t key, VertexRange range, std::span<Vec3f> out) {
+void decode_pose(const ModelView& model, std::uint32_t key, VertexRange range,
+                 std::span<Vec3f> out) {
   const PoseSource& poses = model.poses;
   switch (poses.kind) {
     case PoseKind::kKeyPositions: {
@@ -71,7 +72,7 @@ void decode_pose(const Model& model, std::uint32_t key, VertexRange range, std::
   }
 }
 
-Aabb clip_bounds(const Model& model, std::uint32_t clip) {
+Aabb clip_bounds(const ModelView& model, std::uint32_t clip) {
   Aabb bounds;
   const Clip& keys = model.clips[clip];
   for (const Aabb& box : model.key_boxes.subspan(keys.first_key, keys.key_count))

@@ -1,6 +1,6 @@
-// Model: a decomposed animated mesh ready to be traced, as spans. It owns nothing: the memory is a
-// mapped file (formats/mdk/mdk_file.h) or a ModelStorage. Everything here was checked when it was
-// made: tracing may follow every index and link without asking again.
+// ModelView: a decomposed animated mesh ready to be traced, as spans. It owns nothing: the memory
+// is a mapped file (formats/mdk/mdk_file.h) or a ModelStorage. Everything here was checked when it
+// was made: tracing may follow every index and link without asking again.
 #pragma once
 
 #include <cstddef>
@@ -15,6 +15,7 @@
 #include "common/motion/quantized_poses.h"
 #include "common/motion/rig.h"
 #include "common/structures/kd_tree.h"
+#include "mdk/model.h"
 
 namespace mdk {
 
@@ -158,7 +159,7 @@ void assign_model(To& to, const From& from) {
 }
 
 /// A model as spans.
-struct Model : ModelLists<ConstSpan> {
+struct ModelView : ModelLists<ConstSpan> {
   /// Maps of all clusters at a key.
   std::span<const Affine3f> key_maps(std::uint32_t key) const {
     return local_from_world.subspan(static_cast<std::size_t>(key) * clusters.size(),
@@ -195,37 +196,29 @@ struct Model : ModelLists<ConstSpan> {
 /// A model that owns its memory: what the decomposition returns, before it is written.
 struct ModelStorage : ModelLists<OwnedList, ScratchList> {
   /// Valid while this lives and is not changed.
-  Model view() const;
-};
-
-/// Where a time lies between keys: pose(t) = key0 + s (key1 - key0). At a key exactly, key0 == key1
-/// and s == 0.
-struct KeyInterval {
-  std::uint32_t key0 = 0, key1 = 0;
-  float s = 0;  ///< in [0, 1)
-
-  bool operator==(const KeyInterval&) const = default;
+  ModelView view() const;
 };
 
 /// The interval of `clip` (an index) that holds `seconds`; times outside the clip are clamped to
 /// it. Cost: O(log keys).
-KeyInterval locate_time(const Model& model, std::uint32_t clip, double seconds);
+KeyInterval locate_time(const ModelView& model, std::uint32_t clip, double seconds);
 
 /// Exactly at a key.
 inline KeyInterval at_key(std::uint32_t key) { return {key, key, 0.0f}; }
 
 /// The segment whose boxes hold at a moment; at a key that two segments share, the earlier one.
 /// Cost: O(log segments).
-std::uint32_t segment_of(const Model& model, const KeyInterval& at);
+std::uint32_t segment_of(const ModelView& model, const KeyInterval& at);
 
 /// World positions of a range of vertices at a key; `out` has one per vertex of the range. Always
 /// the same bits, whichever ranges are asked for. Cost: O(range), and O(bones) for a rig.
-void decode_pose(const Model& model, std::uint32_t key, VertexRange range, std::span<Vec3f> out);
+void decode_pose(const ModelView& model, std::uint32_t key, VertexRange range,
+                 std::span<Vec3f> out);
 
 /// A box that holds the mesh at every time of a clip. Cost: O(keys of the clip).
-Aabb clip_bounds(const Model& model, std::uint32_t clip);
+Aabb clip_bounds(const ModelView& model, std::uint32_t clip);
 
 /// Which clip a key belongs to. Cost: O(log clips).
-std::uint32_t clip_of_key(const Model& model, std::uint32_t key);
+std::uint32_t clip_of_key(const ModelView& model, std::uint32_t key);
 
 }  // namespace mdk

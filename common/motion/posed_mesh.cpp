@@ -37,7 +37,7 @@ bool is_usable(const Aabb& b) {
 
 }  // namespace
 
-ClusterVertices::ClusterVertices(const Model& model) {
+ClusterVertices::ClusterVertices(const ModelView& model) {
   const std::uint32_t clusters = model.cluster_count();
   std::vector<std::uint32_t> owner(model.vertex_count, kNone), last_user(model.vertex_count, kNone);
   std::vector<std::pair<std::uint32_t, std::uint32_t>> border;  // vertex, cluster that uses it
@@ -198,7 +198,7 @@ std::size_t PosedMesh::posed_count() const {
 }
 
 void PosedMesh::set_pose(const SkeletonPose& pose) {
-  const Model& m = *model_;
+  const ModelView& m = *model_;
   const std::size_t targets = m.poses.rig.target_weights.size() / m.key_count();
   if (m.skeleton.joints.empty())
     throw Error(ErrorCode::kUsage,
@@ -240,7 +240,7 @@ Aabb PosedMesh::cluster_box(std::uint32_t c) const {
   return is_live() ? live_clusters_[c].box : cluster_world_box(*model_, c, at_);
 }
 
-Aabb cluster_world_box(const Model& model, std::uint32_t c, const KeyInterval& at) {
+Aabb cluster_world_box(const ModelView& model, std::uint32_t c, const KeyInterval& at) {
   const Aabb from = model.world_box(at.key0, c);
   if (at.s == 0.0f || at.key0 == at.key1) return from;
   const Aabb to = model.world_box(at.key1, c);

@@ -22,7 +22,7 @@ namespace mdk {
 class ClusterVertices {
  public:
   /// Cost: O(triangles).
-  explicit ClusterVertices(const Model& model);
+  explicit ClusterVertices(const ModelView& model);
 
   /// The vertices that cluster `c` owns, as ascending ranges.
   std::span<const VertexRange> owned(std::uint32_t c) const { return owned_.of(c); }
@@ -54,7 +54,7 @@ class ClusterVertices {
 /// used in place.
 class PosedMesh {
  public:
-  explicit PosedMesh(const Model& model) : model_(&model) {}
+  explicit PosedMesh(const ModelView& model) : model_(&model) {}
 
   /// Moves to another moment. Cost: O(clusters).
   void set_time(const KeyInterval& at);
@@ -65,7 +65,7 @@ class PosedMesh {
   /// O(vertices + triangles). Runs in parallel.
   void set_pose(const SkeletonPose& pose);
 
-  const Model& model() const { return *model_; }
+  const ModelView& model() const { return *model_; }
   /// The last moment; what is_live() is not at a moment.
   const KeyInterval& at() const { return at_; }
   bool is_live() const { return !live_clusters_.empty(); }
@@ -134,7 +134,7 @@ class PosedMesh {
   void move_between(const VertexRange& range) const;
   bool is_between() const { return to_.positions != nullptr; }
 
-  const Model* model_;
+  const ModelView* model_;
   KeyInterval at_;
   std::span<const Vec3f> positions_;
   KeyPose from_, to_;  ///< the keys around; `to_` only between two
@@ -144,7 +144,7 @@ class PosedMesh {
 
 /// World box of cluster `c` at a moment: holds all its vertices. Linear between keys, which bounds
 /// linearly moving vertices (docs/method.md, time between keys).
-Aabb cluster_world_box(const Model& model, std::uint32_t c, const KeyInterval& at);
+Aabb cluster_world_box(const ModelView& model, std::uint32_t c, const KeyInterval& at);
 
 /// Boxes of all triangles in the current pose, in triangle order; `boxes` has one per triangle.
 /// None is empty or infinite: a triangle with a corner that is not finite cannot be hit

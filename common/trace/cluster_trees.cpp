@@ -49,7 +49,7 @@ std::size_t ClusterTrees::bytes() const {
   return sum;
 }
 
-ClusterTrees build_cluster_trees(const Model& model, std::uint32_t segment) {
+ClusterTrees build_cluster_trees(const ModelView& model, std::uint32_t segment) {
   ClusterTrees built;
   built.trees.resize(model.cluster_count());
   parallel_chunks(built.trees.size(), 1, [&](std::size_t c, std::size_t) {
@@ -76,7 +76,7 @@ std::string validate(std::span<const TriangleBlock> blocks, std::span<const Tria
   return {};
 }
 
-std::string validate(const ClusterTrees& trees, const Model& model) {
+std::string validate(const ClusterTrees& trees, const ModelView& model) {
   if (trees.trees.size() != model.cluster_count() || trees.first_leaf.size() != trees.trees.size())
     return "clusters and trees differ in number";
   std::size_t next = 0;

@@ -31,7 +31,7 @@ struct ClusterTrees {
 
 /// Over the segment's fuzzy boxes. Runs in parallel. Cost: O(T log T). The result depends on the
 /// model alone.
-ClusterTrees build_cluster_trees(const Model& model, std::uint32_t segment);
+ClusterTrees build_cluster_trees(const ModelView& model, std::uint32_t segment);
 
 /// What is wrong with blocks that should hold each of `triangles` in one lane of one block, with
 /// its own corners, spare lanes repeating the first; empty: nothing. Cost: O(T).
@@ -39,6 +39,6 @@ std::string validate(std::span<const TriangleBlock> blocks, std::span<const Tria
 
 /// The same for the leaves of all clusters: the blocks of a cluster's tree hold its triangles and
 /// no others, leaf by leaf.
-std::string validate(const ClusterTrees& trees, const Model& model);
+std::string validate(const ClusterTrees& trees, const ModelView& model);
 
 }  // namespace mdk

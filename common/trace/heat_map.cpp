@@ -35,7 +35,7 @@ double round_scale(double value) {
 }
 
 void triangle_residuals(const PosedMesh& mesh, std::span<float> out) {
-  const Model& model = mesh.model();
+  const ModelView& model = mesh.model();
   PosedMesh rest(model);
   rest.set_time(at_key(model.rest_key));
   parallel_chunks(model.cluster_count(), 1, [&](std::size_t c, std::size_t) {

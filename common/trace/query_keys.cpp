@@ -2,7 +2,7 @@
 
 namespace mdk {
 
-KeyPoses::KeyPoses(const Model& model) : model_(&model) {
+KeyPoses::KeyPoses(const ModelView& model) : model_(&model) {
   if (model.poses.kind != PoseKind::kKeyPositions)
     slots_ = std::make_unique<Slot[]>(model.key_count());
 }
@@ -23,15 +23,7 @@ VertexSource KeyPoses::at(const KeyInterval& at) const {
   return {key(at.key0), key(at.key1), at.key0 == at.key1 ? 0.0f : at.s};
 }
 
-std::size_t KeyPoses::bytes() const {
-  std::size_t vertices = 0;
-  if (slots_ != nullptr)
-    for (std::uint32_t key = 0; key < model_->key_count(); ++key)
-      vertices += slots_[key].positions.size();
-  return vertices * sizeof(Vec3f);
-}
-
-BoxColumns::BoxColumns(const Model& model)
+BoxColumns::BoxColumns(const ModelView& model)
     : clusters_(model.cluster_count()),
       stride_((clusters_ + kMovingBoxLanes - 1) / kMovingBoxLanes * kMovingBoxLanes),
       columns_(6 * stride_ * model.key_count()) {

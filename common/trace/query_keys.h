@@ -17,11 +17,10 @@ namespace mdk {
 /// each key that was asked for; none where the model holds key positions, which are used in place.
 class KeyPoses {
  public:
-  explicit KeyPoses(const Model& model);
+  explicit KeyPoses(const ModelView& model);
 
   /// Positions of all vertices at that time. Cost: O(1), but decoding the first time.
   VertexSource at(const KeyInterval& at) const;
-  std::size_t bytes() const;
 
  private:
   struct Slot {
@@ -31,7 +30,7 @@ class KeyPoses {
 
   const Vec3f* key(std::uint32_t key) const;
 
-  const Model* model_;
+  const ModelView* model_;
   std::unique_ptr<Slot[]> slots_;  ///< by key; none where nothing is decoded
 };
 
@@ -40,12 +39,11 @@ class KeyPoses {
 class BoxColumns {
  public:
   /// Cost: O(F K), and 24 bytes for each, K rounded up to a vector.
-  explicit BoxColumns(const Model& model);
+  explicit BoxColumns(const ModelView& model);
 
   /// Boxes that hold the clusters at that time but for rounding, for which a BoxRay gives way.
   /// Valid while this lives.
   MovingBoxes at(const KeyInterval& at) const;
-  std::size_t bytes() const { return columns_.capacity() * sizeof(float); }
 
  private:
   std::size_t clusters_, stride_;

@@ -1,17 +1,26 @@
-#include "common/trace/ray_query.h"
+// How a ray goes through a model (docs/ray-queries.md): the clusters' boxes at its time, nearest
+// first, then each one's hierarchy; and through all triangles, which is what that is judged by.
+#include "mdk/ray_query.h"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
+#include <span>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "common/base/parallel.h"
 #include "common/math/affine3.h"
+#include "common/motion/model_handle.h"
+#include "common/trace/brute_force.h"
 #include "common/trace/cluster_trees.h"
 #include "common/trace/query_keys.h"
+#include "mdk/error.h"
 
 namespace mdk {
 namespace {
+
+static_assert(kNoTriangle == kNoHit);
 
 constexpr std::size_t kRaysPerChunk = 64;
 
@@ -42,18 +51,17 @@ struct ScaledRay {
     hit.t = t_max * t_scale;
     return hit;
   }
-  QueryHit in_callers_lengths(RayHit hit) const {
+  QueryHit in_callers_lengths(const RayHit& hit) const {
     if (hit.triangle == kNoHit) return {};
-    hit.t /= t_scale;
-    return hit;
+    return {hit.t / t_scale, hit.triangle, hit.bary1, hit.bary2};
   }
 };
 
 /// The farthest any point of the model may be from the ray's origin, and what the triangle test
 /// may be off by at that distance.
-double world_slack(const Model& model, const Vec3d& origin) {
+double world_slack(const ModelView& model, const Vec3d& origin) {
   const Vec3d center = to_double(model.bounds.center());
-  const double reach = length(center - origin) + static_cast<double>(model.bounds.diagonal());
+  const double reach = length(center - origin) + static_cast<double>(diagonal(model.bounds));
   return reach * 0x1p-19;
 }
 
@@ -62,17 +70,16 @@ struct SegmentTrees {
   ClusterTrees trees;
   std::vector<Aabb> bounds;  ///< K, empty for clusters without triangles
 
-  SegmentTrees(const Model& model, std::uint32_t segment)
+  SegmentTrees(const ModelView& model, std::uint32_t segment)
       : trees(build_cluster_trees(model, segment)) {
     for (const WideBvh& tree : trees.trees)
       bounds.push_back(tree.nodes.empty() ? Aabb{} : tree.nodes[0].box());
   }
 };
 
-}  // namespace
-
-class QueryMoment {
- public:
+/// What rays at one time share: the clusters' maps and boxes. Vertices between keys are not posed:
+/// a ray interpolates those it needs.
+struct MomentParts {
   const SegmentTrees& segment;
   VertexSource vertices;
   MovingBoxes boxes;
@@ -86,12 +93,34 @@ class QueryMoment {
   }
 };
 
+}  // namespace
+
+struct QueryMoment::Data {
+  std::shared_ptr<const void> query;  ///< the state that the parts point into
+  MomentParts parts;
+};
+QueryMoment::QueryMoment(std::shared_ptr<const Data> data) : data_(std::move(data)) {}
+
 struct RayQuery::State {
-  explicit State(const Model& m) : model(m), poses(m), boxes(m) {
-    for (std::uint32_t s = 0; s < m.segment_count(); ++s) segments.emplace_back(m, s);
+  explicit State(const Model& m)
+      : handle(m), model(ModelHandle::view(handle)), poses(model), boxes(model) {
+    for (std::uint32_t s = 0; s < model.segment_count(); ++s) segments.emplace_back(model, s);
   }
 
-  QueryMoment moment_at(const KeyInterval& at) const {
+  /// Throws Error (kUsage) for a time that the model does not have.
+  MomentParts moment_at(const KeyInterval& at) const {
+    bool is_known = at.key1 < model.key_count();
+    if (at.key0 == at.key1) {
+      is_known = is_known && at.s == 0;
+    } else {
+      is_known = is_known && at.key0 + 1 == at.key1 && at.s >= 0 && at.s < 1 &&
+                 model.clips[clip_of_key(model, at.key1)].first_key != at.key1;
+    }
+    if (!is_known) {
+      throw Error(ErrorCode::kUsage, "a ray's time is none of the model's: keys " +
+                                         std::to_string(at.key0) + " and " +
+                                         std::to_string(at.key1));
+    }
     return {segments[segment_of(model, at)],
             poses.at(at),
             boxes.at(at),
@@ -101,8 +130,14 @@ struct RayQuery::State {
             {}};
   }
 
+  const MomentParts& parts_of(const QueryMoment::Data& moment) const {
+    if (moment.query.get() != this)
+      throw Error(ErrorCode::kUsage, "the moment was prepared by another ray query");
+    return moment.parts;
+  }
+
   /// Clusters whose boxes the ray enters come nearest first.
-  RayHit trace(const ScaledRay& scaled, float t_max, const QueryMoment& moment, RayAim aim) const {
+  RayHit trace(const ScaledRay& scaled, float t_max, const MomentParts& moment, RayAim aim) const {
     RayHit hit = scaled.nothing_yet(t_max);
     const WorldRay& ray = scaled.ray;
     const double slack = world_slack(model, ray.origin);
@@ -122,69 +157,62 @@ struct RayQuery::State {
     return hit;
   }
 
-  QueryHit closest(const QueryRay& ray, const QueryMoment& moment) const {
+  QueryHit closest(const QueryRay& ray, const MomentParts& moment) const {
     const ScaledRay scaled(ray);
     if (!scaled.usable) return {};
     return scaled.in_callers_lengths(trace(scaled, ray.t_max, moment, RayAim::kClosest));
   }
-  bool any(const QueryRay& ray, const QueryMoment& moment) const {
+  bool any(const QueryRay& ray, const MomentParts& moment) const {
     const ScaledRay scaled(ray);
     return scaled.usable && trace(scaled, ray.t_max, moment, RayAim::kAny).triangle != kNoHit;
   }
 
-  const Model& model;
+  const Model handle;  ///< keeps the model alive
+  const ModelView& model;
   KeyPoses poses;
   BoxColumns boxes;
   std::vector<SegmentTrees> segments;
 };
 
-RayQuery::RayQuery(const Model& model) : state_(std::make_unique<State>(model)) {}
-RayQuery::~RayQuery() = default;
+RayQuery::RayQuery(const Model& model) : state_(std::make_shared<const State>(model)) {}
 
-QueryHit RayQuery::closest_hit(const QueryRay& ray, const KeyInterval& at) const {
-  return state_->closest(ray, state_->moment_at(at));
+QueryHit RayQuery::closest_hit(const QueryRay& ray, const KeyInterval& time) const {
+  return state_->closest(ray, state_->moment_at(time));
 }
-bool RayQuery::any_hit(const QueryRay& ray, const KeyInterval& at) const {
-  return state_->any(ray, state_->moment_at(at));
+bool RayQuery::any_hit(const QueryRay& ray, const KeyInterval& time) const {
+  return state_->any(ray, state_->moment_at(time));
 }
 QueryHit RayQuery::closest_hit(const QueryRay& ray, const QueryMoment& moment) const {
-  return state_->closest(ray, moment);
+  return state_->closest(ray, state_->parts_of(*moment.data_));
 }
 bool RayQuery::any_hit(const QueryRay& ray, const QueryMoment& moment) const {
-  return state_->any(ray, moment);
+  return state_->any(ray, state_->parts_of(*moment.data_));
 }
 
-std::shared_ptr<const QueryMoment> RayQuery::prepare(const KeyInterval& at) const {
-  const auto moment = std::make_shared<QueryMoment>(state_->moment_at(at));
+QueryMoment RayQuery::prepare(const KeyInterval& time) const {
+  MomentParts parts = state_->moment_at(time);
   for (std::uint32_t c = 0; c < state_->model.cluster_count(); ++c)
-    moment->maps.push_back(interpolate(moment->from[c], moment->to[c], at.s));
-  return moment;
+    parts.maps.push_back(interpolate(parts.from[c], parts.to[c], time.s));
+  return QueryMoment(
+      std::make_shared<const QueryMoment::Data>(QueryMoment::Data{state_, std::move(parts)}));
 }
 
-void RayQuery::closest_hits(std::span<const QueryRay> rays, std::span<const KeyInterval> times,
-                            std::span<QueryHit> hits) const {
-  assert(rays.size() == times.size() && rays.size() == hits.size());
-  parallel_chunks(rays.size(), kRaysPerChunk, [&](std::size_t begin, std::size_t end) {
+void RayQuery::closest_hits(const QueryRay* rays, const KeyInterval* times, QueryHit* hits,
+                            std::size_t count) const {
+  parallel_chunks(count, kRaysPerChunk, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) hits[i] = closest_hit(rays[i], times[i]);
   });
 }
 
-void RayQuery::any_hits(std::span<const QueryRay> rays, std::span<const KeyInterval> times,
-                        std::span<std::uint8_t> hits) const {
-  assert(rays.size() == times.size() && rays.size() == hits.size());
-  parallel_chunks(rays.size(), kRaysPerChunk, [&](std::size_t begin, std::size_t end) {
+void RayQuery::any_hits(const QueryRay* rays, const KeyInterval* times, std::uint8_t* hits,
+                        std::size_t count) const {
+  parallel_chunks(count, kRaysPerChunk, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) hits[i] = any_hit(rays[i], times[i]);
   });
 }
 
-std::size_t RayQuery::structure_bytes() const {
-  std::size_t bytes = state_->poses.bytes() + state_->boxes.bytes();
-  for (const SegmentTrees& segment : state_->segments)
-    bytes += segment.trees.bytes() + segment.bounds.size() * sizeof(Aabb);
-  return bytes;
-}
-
-QueryHit brute_force_closest_hit(const Model& model, const QueryRay& ray, const KeyInterval& at) {
+QueryHit brute_force_closest_hit(const ModelView& model, const QueryRay& ray,
+                                 const KeyInterval& at) {
   PosedMesh mesh(model);
   mesh.set_time(at);
   return brute_force_closest_hit(mesh, ray);
@@ -194,7 +222,7 @@ QueryHit brute_force_closest_hit(const PosedMesh& mesh, const QueryRay& ray) {
   const ScaledRay scaled(ray);
   if (!scaled.usable) return {};
   RayHit hit = scaled.nothing_yet(ray.t_max);
-  const Model& model = mesh.model();
+  const ModelView& model = mesh.model();
   const VertexSource vertices{mesh.positions().data(), mesh.positions().data(), 0};
   TriangleBlock block;
   for (std::uint32_t t = 0; t < model.triangle_count(); ++t) {

@@ -51,9 +51,9 @@ struct Worker {
 }  // namespace
 
 struct Renderer::State {
-  explicit State(const Model& m) : model(m), mesh(m), shader(m) {}
+  explicit State(const ModelView& m) : model(m), mesh(m), shader(m) {}
 
-  const Model& model;
+  const ModelView& model;
   PosedMesh mesh;
   Shader shader;
   std::map<std::string_view, std::unique_ptr<Technique>> techniques;
@@ -88,7 +88,7 @@ struct Renderer::State {
   }
 };
 
-Renderer::Renderer(const Model& model, std::string_view technique_id)
+Renderer::Renderer(const ModelView& model, std::string_view technique_id)
     : state_(std::make_unique<State>(model)) {
   set_technique(technique_id);
 }
@@ -198,7 +198,7 @@ const FrameStats& Renderer::stats() const { return state_->stats; }
 std::size_t Renderer::structure_bytes() const { return state_->technique->structure_bytes(); }
 std::string Renderer::technique_note() const { return state_->technique->note(); }
 
-std::vector<KeyInterval> shutter_moments(const Model& model, std::uint32_t clip, double seconds,
+std::vector<KeyInterval> shutter_moments(const ModelView& model, std::uint32_t clip, double seconds,
                                          double open, std::uint32_t samples) {
   std::vector<KeyInterval> moments;
   moments.reserve(samples);

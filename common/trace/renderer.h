@@ -35,7 +35,7 @@ struct FrameRequest {
 /// Not for use from several threads at once; uses many inside. The model must outlive it.
 class Renderer {
  public:
-  Renderer(const Model& model, std::string_view technique_id);
+  Renderer(const ModelView& model, std::string_view technique_id);
   ~Renderer();
   Renderer(const Renderer&) = delete;
   Renderer& operator=(const Renderer&) = delete;
@@ -73,7 +73,7 @@ class Renderer {
 /// One moment per sample, spread evenly over `open` seconds with `seconds` of the clip in their
 /// middle, which is the first one's; in an order that has nothing to do with where in their pixel
 /// the samples are. Times outside the clip are clamped to it.
-std::vector<KeyInterval> shutter_moments(const Model& model, std::uint32_t clip, double seconds,
+std::vector<KeyInterval> shutter_moments(const ModelView& model, std::uint32_t clip, double seconds,
                                          double open, std::uint32_t samples);
 
 }  // namespace mdk

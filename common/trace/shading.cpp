@@ -87,7 +87,7 @@ void store(std::uint8_t& place, std::uint8_t mark) {
 /// Where the vertices that a picture shows are, and their smooth normals.
 class SeenVertices {
  public:
-  explicit SeenVertices(const Model& model)
+  explicit SeenVertices(const ModelView& model)
       : model_(&model),
         seen_triangles_(std::size_t{model.triangle_count()} + 1, 0),
         seen_vertices_(model.vertex_count, 0),
@@ -159,7 +159,7 @@ class SeenVertices {
     return {.position = positions[vertex], .normal = normalized(sum, Vec3f{})};
   }
 
-  const Model* model_;
+  const ModelView* model_;
   std::vector<std::uint32_t> first_corner_;  ///< per vertex: where its triangles begin in ring_
   std::vector<std::uint32_t> ring_;
   /// Equal to frame_ where it is seen. One triangle more stands for "no hit".
@@ -198,7 +198,7 @@ struct Scratch {
 }  // namespace
 
 struct Shader::State {
-  explicit State(const Model& m)
+  explicit State(const ModelView& m)
       : model(m),
         triangle_cluster(model.triangle_count()),
         is_flat(model.triangle_count()),
@@ -406,7 +406,7 @@ struct Shader::State {
     return report;
   }
 
-  const Model& model;
+  const ModelView& model;
   std::vector<Vec3f> material_colors, cluster_colors;
   std::vector<std::uint32_t> triangle_cluster;
   std::vector<std::uint8_t> is_flat;            ///< per triangle
@@ -416,7 +416,7 @@ struct Shader::State {
   HeatMap heat;
 };
 
-Shader::Shader(const Model& model) : state_(std::make_unique<State>(model)) {}
+Shader::Shader(const ModelView& model) : state_(std::make_unique<State>(model)) {}
 Shader::~Shader() = default;
 
 ShadingReport Shader::shade(const ShadingInput& input, ShadingMode mode, Film& film) {

@@ -65,7 +65,7 @@ struct ShadingReport {
 /// Turns hits into light on a film. Keeps what it needs between frames.
 class Shader {
  public:
-  explicit Shader(const Model& model);
+  explicit Shader(const ModelView& model);
   ~Shader();
 
   /// One sample of every pixel. Runs in parallel. The same for any number of threads and any

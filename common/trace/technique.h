@@ -66,7 +66,7 @@ struct TechniqueInfo {
   std::string_view label;    ///< as in the panel
   std::string_view summary;  ///< half a sentence
   std::string_view source;
-  std::unique_ptr<Technique> (*make)(const Model&);
+  std::unique_ptr<Technique> (*make)(const ModelView&);
   TechniqueKind kind = TechniqueKind::kStructure;
 
   /// How its hits are compared with brute force's.

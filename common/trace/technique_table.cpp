@@ -9,7 +9,7 @@ namespace mdk {
 namespace {
 
 /// Whichever of ours measures cheapest on this model, view and machine.
-std::unique_ptr<Technique> make_auto(const Model& model) {
+std::unique_ptr<Technique> make_auto(const ModelView& model) {
   // Most likely best first; those that build anew in every frame are left out: where that could
   // pay, hybrid-bvh does it when it does.
   static constexpr TechniqueCandidate kCandidates[] = {{"fuzzy-bvh", make_fuzzy_bvh},

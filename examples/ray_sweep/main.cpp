@@ -1,17 +1,16 @@
 // ray_sweep FILE.mdk: looks at the model as a lidar does that turns once while the first clip
-// plays, every ray at a time of its own, and prints what it met.
+// plays, every ray at a time of its own, and prints how many hit.
+#include <mdk/error.h>
+#include <mdk/ray_query.h>
+
 #include <cmath>
 #include <iostream>
-#include <numbers>
 #include <vector>
-
-#include "common/base/error.h"
-#include "common/trace/ray_query.h"
-#include "formats/mdk/mdk_file.h"
 
 namespace {
 
 constexpr int kRays = 3600;
+constexpr double kTurn = 6.283185307179586;
 
 struct Sweep {
   std::vector<mdk::QueryRay> rays;
@@ -20,30 +19,33 @@ struct Sweep {
 
 /// From outside the model's bounds towards its middle, from all sides.
 Sweep make_sweep(const mdk::Model& model) {
-  const mdk::Vec3f middle = (model.bounds.lo + model.bounds.hi) * 0.5f;
-  const mdk::Vec3f size = model.bounds.hi - model.bounds.lo;
+  const mdk::Vec3f middle = model.bounds().center();
+  const mdk::Vec3f size = model.bounds().extent();
   const float radius = std::sqrt(size.x * size.x + size.y * size.y + size.z * size.z);
-  const double seconds = model.clip_seconds(model.clips.front());
+  const double seconds = model.clip(0).seconds;
   Sweep sweep;
   for (int i = 0; i < kRays; ++i) {
-    const double turn = static_cast<double>(i) / kRays;
-    const auto angle = static_cast<float>(2 * std::numbers::pi * turn);
+    const double share = static_cast<double>(i) / kRays;
+    const auto angle = static_cast<float>(kTurn * share);
     const mdk::Vec3f away{std::cos(angle), 0, std::sin(angle)};
-    sweep.rays.push_back({.origin = middle + away * radius, .direction = away * -1.0f});
-    sweep.times.push_back(mdk::locate_time(model, 0, seconds * turn));
+    mdk::QueryRay ray;
+    ray.origin = middle + away * radius;
+    ray.direction = -away;
+    sweep.rays.push_back(ray);
+    sweep.times.push_back(model.locate_time(0, seconds * share));
   }
   return sweep;
 }
 
 void run(const char* path) {
-  const mdk::MdkFile file(path);
-  const mdk::RayQuery query(file.model());
-  const Sweep sweep = make_sweep(file.model());
+  const mdk::Model model = mdk::Model::load(path);
+  const mdk::RayQuery query(model);
+  const Sweep sweep = make_sweep(model);
   std::vector<mdk::QueryHit> hits(sweep.rays.size());
-  query.closest_hits(sweep.rays, sweep.times, hits);
-  int met = 0;
-  for (const mdk::QueryHit& hit : hits) met += std::isfinite(hit.t) ? 1 : 0;
-  std::cout << met << " of " << kRays << " rays hit\n";
+  query.closest_hits(sweep.rays.data(), sweep.times.data(), hits.data(), hits.size());
+  int hit_count = 0;
+  for (const mdk::QueryHit& hit : hits) hit_count += hit.is_hit() ? 1 : 0;
+  std::cout << hit_count << " of " << kRays << " rays hit\n";
 }
 
 }  // namespace

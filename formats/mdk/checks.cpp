@@ -25,7 +25,7 @@ std::string first_of(std::initializer_list<std::string> faults) {
   return {};
 }
 
-ArrayCounts counts_of(const Model& m) {
+ArrayCounts counts_of(const ModelView& m) {
   const std::uint64_t keys = m.key_times.size(), runs = m.poses.quantized.first_vertex.size();
   ArrayCounts counts;
   counts.set(Count::kVertices, m.vertex_count);
@@ -40,7 +40,7 @@ ArrayCounts counts_of(const Model& m) {
 }
 
 /// Why a part of a model is not there, or null where it is.
-const char* absence_of(ModelPart part, const Model& m) {
+const char* absence_of(ModelPart part, const ModelView& m) {
   constexpr const char* kOtherwise = "poses are stored in another way";
   const PoseKind kind = m.poses.kind;
   switch (part) {
@@ -60,11 +60,11 @@ const char* absence_of(ModelPart part, const Model& m) {
 }
 
 /// In the order of the file, so that products are taken of counts that are sound.
-std::string check_counts(const Model& m) {
+std::string check_counts(const ModelView& m) {
   const ArrayCounts counts = counts_of(m);
   std::string fault = first_of({range_fault("vertices", m.vertex_count, 1, kMaxCount),
                                 range_fault("clips", m.clips.size(), 1, kMaxCount)});
-  Model::for_each_array(
+  ModelView::for_each_array(
       [&](const ModelArray& row, const auto& array) {
         if (!fault.empty()) return;
         const char* const absence = absence_of(row.part, m);
@@ -111,7 +111,7 @@ bool is_box(const QuantizedBox& b) {
   return b.lo[0] <= b.hi[0] && b.lo[1] <= b.hi[1] && b.lo[2] <= b.hi[2];
 }
 
-std::string check_scalars(const Model& m) {
+std::string check_scalars(const ModelView& m) {
   if (m.rest_key >= m.key_count()) {
     return "model: rest key " + number(m.rest_key) + " is not one of its " + number(m.key_count()) +
            " keys";
@@ -123,7 +123,7 @@ std::string check_scalars(const Model& m) {
   return {};
 }
 
-std::string check_clips(const Model& m) {
+std::string check_clips(const ModelView& m) {
   std::uint64_t name_bytes = 0;
   for (std::size_t i = 0; i < m.clips.size(); ++i) {
     if (!is_utf8(m.clips[i].name))
@@ -134,7 +134,7 @@ std::string check_clips(const Model& m) {
   return clip_fault(m.clips, m.key_times);
 }
 
-std::string check_triangles(const Model& m) {
+std::string check_triangles(const ModelView& m) {
   for (std::size_t t = 0; t < m.source_triangles.size(); ++t) {
     if (m.source_triangles[t] >= m.triangles.size()) {
       return "source_triangles: triangle " + number(t) + " comes from one that does not exist";
@@ -143,7 +143,7 @@ std::string check_triangles(const Model& m) {
   return triangle_fault(m.triangles, m.vertex_count);
 }
 
-std::string check_segments(const Model& m) {
+std::string check_segments(const ModelView& m) {
   std::uint64_t next_first = 0;
   for (std::size_t i = 0; i < m.segments.size(); ++i) {
     const Segment& segment = m.segments[i];
@@ -175,7 +175,7 @@ struct Partition {
   }
 };
 
-std::string check_clusters(const Model& m) {
+std::string check_clusters(const ModelView& m) {
   Partition triangles{"triangles", m.triangles.size()};
   for (std::size_t i = 0; i < m.clusters.size(); ++i) {
     const Cluster& c = m.clusters[i];
@@ -190,7 +190,7 @@ std::string check_clusters(const Model& m) {
   return {};
 }
 
-std::string check_tree_ranges(const Model& m) {
+std::string check_tree_ranges(const ModelView& m) {
   Partition nodes{"nodes", m.kd_nodes.size()};
   Partition refs{"references", m.kd_refs.size()};
   for (std::size_t i = 0; i < m.fuzzy_trees.size(); ++i) {
@@ -211,7 +211,7 @@ std::string check_tree_ranges(const Model& m) {
   return {};
 }
 
-std::string check_trees(const Model& m) {
+std::string check_trees(const ModelView& m) {
   for (std::size_t i = 0; i < m.fuzzy_trees.size(); ++i) {
     const Cluster& c = m.clusters[i % m.clusters.size()];
     const std::string fault = validate(m.tree_view(m.fuzzy_trees[i]), c.first_triangle,
@@ -229,7 +229,7 @@ std::string box_fault(const char* name, std::span<const Box> boxes, const char* 
   return {};
 }
 
-std::string check_boxes_and_maps(const Model& m) {
+std::string check_boxes_and_maps(const ModelView& m) {
   for (std::size_t i = 0; i < m.local_from_world.size(); ++i) {
     if (!is_number(m.local_from_world[i]))
       return "local_from_world: map " + number(i) + " is not finite";
@@ -275,7 +275,7 @@ std::string check_rig_links(const RigView& rig, std::uint64_t keys) {
   return {};
 }
 
-std::string check_rig(const Model& m) {
+std::string check_rig(const ModelView& m) {
   const RigView& rig = m.poses.rig;
   return first_of(
       {check_rig_links(rig, m.key_times.size()), number_fault("base_positions", rig.base_positions),
@@ -302,7 +302,7 @@ std::string check_quantized_block(const QuantizedBlock& block, std::uint64_t fir
   return {};
 }
 
-std::string check_quantized(const Model& m) {
+std::string check_quantized(const ModelView& m) {
   const QuantizedView& q = m.poses.quantized;
   if (std::string fault = first_of({check_quantization_error(q),
                                     run_fault("first_vertex", q.first_vertex, m.vertex_count, 1),
@@ -322,7 +322,7 @@ std::string check_quantized(const Model& m) {
   return count_fault("quantized_words", q.words.size(), bits / 32 + 1);
 }
 
-std::string check_poses(const Model& m) {
+std::string check_poses(const ModelView& m) {
   switch (m.poses.kind) {
     case PoseKind::kKeyPositions:
       return {};
@@ -353,7 +353,7 @@ std::string check_joints(const SkeletonView& s) {
   return {};
 }
 
-std::string check_skeleton(const Model& m) {
+std::string check_skeleton(const ModelView& m) {
   const SkeletonView& s = m.skeleton;
   if (!s.joints.empty() && m.segments.size() != 1)
     return "segments: more than one, though the skeleton needs one";
@@ -372,13 +372,13 @@ std::string check_skeleton(const Model& m) {
   return {};
 }
 
-std::string check_appearance(const Model& m) {
+std::string check_appearance(const ModelView& m) {
   return appearance_fault(m.appearance, m.triangles.size());
 }
 
 }  // namespace
 
-std::string find_inconsistency(const Model& model) {
+std::string find_inconsistency(const ModelView& model) {
   for (const auto check : {check_counts, check_scalars, check_clips, check_segments,
                            check_triangles, check_clusters, check_tree_ranges, check_trees,
                            check_boxes_and_maps, check_poses, check_skeleton, check_appearance}) {

@@ -20,8 +20,8 @@ std::optional<ModelArray> find_row(std::uint32_t id) {
   for (const ModelArray& row : {layout::kModel, layout::kClips, layout::kClipNames})
     if (row.id == id) return row;
   std::optional<ModelArray> found;
-  const Model empty;
-  Model::for_each_array(
+  const ModelView empty;
+  ModelView::for_each_array(
       [&](const ModelArray& row, const auto&) {
         if (row.id == id) found = row;
       },

@@ -89,7 +89,8 @@ static_assert(sizeof(QuantizationError) == 16 && sizeof(QuantizedBlock) == 72);
 static_assert(offsetof(QuantizedBlock, bits) == 60 && offsetof(QuantizedBlock, first_bit) == 64);
 static_assert(sizeof(MorphOffset) == 16 && offsetof(MorphOffset, offset) == 4);
 
-/// What stands in sections in another form than in the model; all else is Model::for_each_array.
+/// What stands in sections in another form than in the model; all else is
+/// ModelView::for_each_array.
 inline constexpr ModelArray kModel = array_row("MODL", "model", count_rules::exactly(Count::kOne));
 inline constexpr ModelArray kClips = array_row("CLIP", "clips", count_rules::some());
 inline constexpr ModelArray kClipNames = array_row("NAME", "clip_names", count_rules::any());

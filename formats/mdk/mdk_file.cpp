@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "common/base/error.h"
+#include "common/motion/model_handle.h"
 #include "formats/files/mapped_file.h"
 #include "formats/mdk/layout.h"
 
@@ -49,7 +50,7 @@ std::vector<Clip> read_clips(const MdkSections& sections, const std::string& pat
   return clips;
 }
 
-bool counts_agree(const ModelRecord& record, const Model& model) {
+bool counts_agree(const ModelRecord& record, const ModelView& model) {
   return record.key_count == model.key_times.size() &&
          record.triangle_count == model.triangles.size() &&
          record.cluster_count == model.clusters.size() &&
@@ -69,7 +70,7 @@ struct MdkFile::State {
     model.rest_diagonal = record.rest_diagonal;
     model.poses.kind = record.pose_kind;
     model.clips = clips;
-    Model::for_each_array(
+    ModelView::for_each_array(
         [&]<class T>(const ModelArray& row, std::span<const T>& array) {
           array = sections.array<T>(row);
         },
@@ -88,7 +89,7 @@ struct MdkFile::State {
   MappedFile file;
   MdkSections sections;
   std::vector<Clip> clips;
-  Model model;
+  ModelView model;
 };
 
 MdkFile::MdkFile(const std::string& path) : state_(std::make_unique<State>(path)) {}
@@ -96,7 +97,7 @@ MdkFile::~MdkFile() = default;
 MdkFile::MdkFile(MdkFile&&) noexcept = default;
 MdkFile& MdkFile::operator=(MdkFile&&) noexcept = default;
 
-const Model& MdkFile::model() const { return state_->model; }
+const ModelView& MdkFile::model() const { return state_->model; }
 const std::string& MdkFile::path() const { return state_->path; }
 std::span<const std::byte> MdkFile::bytes() const { return state_->file.bytes(); }
 std::uint64_t MdkFile::file_bytes() const { return state_->file.bytes().size(); }
@@ -125,6 +126,11 @@ void MdkFile::verify_checksums() const {
                           "it again");
     }
   }
+}
+
+Model Model::load(const std::string& path) {
+  const auto file = std::make_shared<const MdkFile>(path);
+  return ModelHandle::make(file->model(), file);
 }
 
 }  // namespace mdk

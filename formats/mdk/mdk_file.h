@@ -1,5 +1,5 @@
 // MdkFile: an .mdk image that is open. It maps the file, checks everything tracing relies on, and
-// gives a Model whose spans point into the mapping (docs/file-format.md).
+// gives a ModelView whose spans point into the mapping (docs/file-format.md).
 #pragma once
 
 #include <array>
@@ -37,7 +37,7 @@ struct MdkSectionInfo {
 /// own work. Empty, or the first thing that is wrong ("clusters: cluster 3 does not start where the
 /// last one ended"). Does not look at positions, texture coordinates, colours or texels. Cost: one
 /// pass over everything else.
-std::string find_inconsistency(const Model& model);
+std::string find_inconsistency(const ModelView& model);
 
 class MdkFile {
  public:
@@ -50,7 +50,7 @@ class MdkFile {
   MdkFile& operator=(MdkFile&&) noexcept;
 
   /// Valid while this lives.
-  const Model& model() const;
+  const ModelView& model() const;
   const std::string& path() const;
   std::uint64_t file_bytes() const;
   /// The whole image, as it stands in the file.

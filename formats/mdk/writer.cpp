@@ -33,7 +33,7 @@ struct Records {
   std::string clip_names;
 };
 
-Records make_records(const Model& model) {
+Records make_records(const ModelView& model) {
   Records records;
   ModelRecord& r = records.model;
   r.vertex_count = model.vertex_count;
@@ -67,14 +67,14 @@ Section make_section(const ModelArray& row, std::span<const T> elements) {
   return section;
 }
 
-std::vector<Section> make_sections(const Model& model, const Records& records) {
+std::vector<Section> make_sections(const ModelView& model, const Records& records) {
   std::vector<Section> sections;
   sections.push_back(make_section(layout::kModel, std::span(&records.model, 1)));
   sections.push_back(make_section(layout::kClips, std::span(records.clips)));
   sections.push_back(make_section(layout::kClipNames, std::span(records.clip_names)));
-  Model::for_each_array([&](const ModelArray& row,
-                            auto elements) { sections.push_back(make_section(row, elements)); },
-                        model);
+  ModelView::for_each_array([&](const ModelArray& row,
+                                auto elements) { sections.push_back(make_section(row, elements)); },
+                            model);
   return sections;
 }
 
@@ -118,7 +118,7 @@ class PieceWriter {
 
 }  // namespace
 
-std::uint64_t write_mdk(const Model& model, const std::string& path,
+std::uint64_t write_mdk(const ModelView& model, const std::string& path,
                         const MdkWriteOptions& options) {
   if (const std::string fault = find_inconsistency(model); !fault.empty()) {
     throw Error(ErrorCode::kInternal, path + ": not written, the model is inconsistent (" + fault +

@@ -19,7 +19,7 @@ struct MdkWriteOptions {
 /// Writes the whole file or nothing: a temporary name in the same folder, fsync, rename. The bytes
 /// depend on the model and the origin alone. Returns the file's size in bytes. Throws Error (kIo)
 /// naming `path`.
-std::uint64_t write_mdk(const Model& model, const std::string& path,
+std::uint64_t write_mdk(const ModelView& model, const std::string& path,
                         const MdkWriteOptions& options = {});
 
 }  // namespace mdk

@@ -48,7 +48,7 @@ std::uint32_t parse_judged(std::string_view text) {
 ModelBench bench_file(const std::string& path, const ViewOptions& view, BenchConfig config,
                       ProgressSink& progress) {
   const MdkFile file(path);
-  const Model& model = file.model();
+  const ModelView& model = file.model();
   config.request.camera = choose_camera(view, model.bounds);
   config.request.width = view.size.width;
   config.request.height = view.size.height;

@@ -28,7 +28,7 @@ FrameRequest request_of(const BenchConfig& config, std::uint32_t key) {
 double rounded(double milliseconds) { return std::round(milliseconds * 1e5) / 1e5; }
 
 /// Adds a frame for each key to each technique's result.
-void count_and_judge(const Model& model, const BenchConfig& config, Renderers& renderers,
+void count_and_judge(const ModelView& model, const BenchConfig& config, Renderers& renderers,
                      std::vector<TechniqueBench>& results, ProgressSink& progress) {
   Renderer oracle(model, "brute-force");
   const std::vector<std::uint32_t> keys = spread_keys(config.frames, model.key_count());
@@ -94,7 +94,7 @@ std::string processor_name() {
 
 }  // namespace
 
-std::vector<TechniqueBench> bench_techniques(const Model& model, const BenchConfig& config,
+std::vector<TechniqueBench> bench_techniques(const ModelView& model, const BenchConfig& config,
                                              ProgressSink& progress) {
   const std::size_t count = config.techniques.size();
   std::vector<TechniqueBench> results(count);

@@ -31,7 +31,7 @@ struct BenchConfig {
 };
 
 /// In the order of `config.techniques`. Throws Error (kUsage) for a size or camera that cannot be.
-std::vector<TechniqueBench> bench_techniques(const Model& model, const BenchConfig& config,
+std::vector<TechniqueBench> bench_techniques(const ModelView& model, const BenchConfig& config,
                                              ProgressSink& progress);
 
 /// The processor's name as the system gives it, or "unknown processor"; cores this process may use.

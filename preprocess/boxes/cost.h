@@ -83,7 +83,7 @@ double mean_hit_probability(std::span<const BasicAabb<T>> world_boxes,
   double entered = 0, counted = 0;
   for (std::size_t key = 0; key < world_boxes.size(); ++key) {
     if (!(model_areas[key] > 0)) continue;
-    entered += world_boxes[key].surface_area() / model_areas[key];
+    entered += surface_area(world_boxes[key]) / model_areas[key];
     counted += 1;
   }
   return counted > 0 ? entered / counted : 1;

@@ -110,7 +110,7 @@ class SegmentBoxes {
 };
 
 /// What the cost needs to know about one cluster of the finished model in one segment.
-ClusterWork cluster_work(const Model& model, std::uint32_t segment, std::size_t cluster,
+ClusterWork cluster_work(const ModelView& model, std::uint32_t segment, std::size_t cluster,
                          const AreaWeightTable& weights, std::span<const double> model_areas) {
   const Segment& keys = model.segments[segment];
   std::vector<Aabb> world_boxes;
@@ -134,7 +134,7 @@ AreaWeights tree_weights(const AreaWeights& w) {
 /// Into the trees whose local boxes are there. `work`: S * K, segment-major.
 void build_fuzzy_trees(ModelStorage& model, std::span<const ClusterWork> work) {
   const std::size_t clusters = model.clusters.size();
-  const Model view = model.view();
+  const ModelView view = model.view();
   std::vector<KdTree> trees(work.size());
   parallel_chunks(trees.size(), 1, [&](std::size_t i, std::size_t) {
     KdBuildConfig config;
@@ -203,7 +203,7 @@ AssembledModel assemble_model(PoseSequence sequence, Decomposition decomposition
   AssembledModel result;
   ModelStorage& model = result.model;
   model.rest_key = decomposition.growth.rest_key;
-  model.rest_diagonal = pose_box(sequence.pose(model.rest_key)).diagonal();
+  model.rest_diagonal = diagonal(pose_box(sequence.pose(model.rest_key)));
   model.segments = std::move(decomposition.segments);
   model.clusters = cluster_ranges(members);
   model.fuzzy_boxes.reserve(model.segments.size() * sequence.triangles.size());
@@ -221,7 +221,7 @@ AssembledModel assemble_model(PoseSequence sequence, Decomposition decomposition
   const std::vector<double> model_areas = pose_box_areas(sequence);
   progress.report("build", boxes_until);
   const AreaWeightTable weights(model.local_from_world, model_areas);
-  const Model view = model.view();
+  const ModelView view = model.view();
   std::vector<ClusterWork> work;
   for (std::uint32_t s = 0; s < model.segments.size(); ++s)
     for (std::size_t c = 0; c < model.clusters.size(); ++c)

@@ -78,7 +78,7 @@ std::string stop_text(const std::string& reason) {
 }
 
 /// Schema "mdprep-bake/1".
-std::string bake_report_json(const Model& model, const DecomposeStats& stats,
+std::string bake_report_json(const ModelView& model, const DecomposeStats& stats,
                              const BakeOutcome& outcome) {
   using Json = nlohmann::ordered_json;
   Json clips = Json::array();
@@ -126,7 +126,7 @@ std::string bake_report_json(const Model& model, const DecomposeStats& stats,
   return report.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
-std::string bake_summary(const Model& model, const DecomposeStats& stats,
+std::string bake_summary(const ModelView& model, const DecomposeStats& stats,
                          const BakeOutcome& outcome) {
   const auto count = [](std::uint64_t n, const std::string& thing) {
     return grouped_text(n) + " " + thing + (n == 1 ? "" : "s");
@@ -250,7 +250,7 @@ void run_bake(const BakeArguments& arguments, CommandContext& context) {
 
   ProgressPart writing(progress, ends.decomposed, 1);
   stage.lap();
-  const Model model = result.model.view();
+  const ModelView model = result.model.view();
   const MdkOrigin origin{
       tool_version(), context.options_hash,
       source.read_through.empty() ? SourceReader::kMdprep : SourceReader::kAssimp};

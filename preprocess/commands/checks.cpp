@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t kTrianglesPerChunk = 8192;
 
-std::vector<std::uint32_t> triangle_clusters(const Model& model) {
+std::vector<std::uint32_t> triangle_clusters(const ModelView& model) {
   std::vector<std::uint32_t> owner(model.triangle_count());
   for (std::uint32_t c = 0; c < model.cluster_count(); ++c) {
     const Cluster& cluster = model.clusters[c];
@@ -25,7 +25,7 @@ std::vector<std::uint32_t> triangle_clusters(const Model& model) {
   return owner;
 }
 
-std::string moment_text(const Model& model, const KeyInterval& at) {
+std::string moment_text(const ModelView& model, const KeyInterval& at) {
   const std::string key = "key " + std::to_string(at.key0);
   const std::string clip = " of clip " + model.clips[clip_of_key(model, at.key0)].name;
   return (at.key0 == at.key1 ? key : key + " + " + fixed_text(at.s, 6)) + clip;
@@ -60,7 +60,7 @@ struct BoxFailures {
 /// What holds at one moment for all triangles.
 class MomentCheck {
  public:
-  explicit MomentCheck(const Model& model)
+  explicit MomentCheck(const ModelView& model)
       : model_(model), mesh_(model), owner_(triangle_clusters(model)) {}
 
   /// At a key that two segments share, the boxes of both must hold.
@@ -109,7 +109,7 @@ class MomentCheck {
     if (!in_bounds) failures.bounds.add(t);
   }
 
-  const Model& model_;
+  const ModelView& model_;
   PosedMesh mesh_;
   std::vector<std::uint32_t> owner_;
   std::uint32_t segment_ = 0;
@@ -144,7 +144,7 @@ bool is_listed(const KdTreeView& tree, std::uint32_t node_index, const Aabb& box
   return (lo >= split || is_listed_in(node.below())) && (hi <= split || is_listed_in(node.above()));
 }
 
-void check_tree(const Model& model, std::size_t tree_index, CheckResult& leaves) {
+void check_tree(const ModelView& model, std::size_t tree_index, CheckResult& leaves) {
   const std::size_t c = tree_index % model.clusters.size();
   const Cluster& cluster = model.clusters[c];
   const auto segment = static_cast<std::uint32_t>(tree_index / model.clusters.size());
@@ -158,8 +158,8 @@ void check_tree(const Model& model, std::size_t tree_index, CheckResult& leaves)
   }
 }
 
-std::vector<Camera> cameras_for(const Model& model) {
-  const double size = model.bounds.diagonal() > 0 ? model.bounds.diagonal() : 1;
+std::vector<Camera> cameras_for(const ModelView& model) {
+  const double size = diagonal(model.bounds) > 0 ? diagonal(model.bounds) : 1;
   const Vec3d center = to_double(model.bounds.center());
   Camera close;
   close.target = to_float(center);
@@ -176,7 +176,7 @@ struct JudgedTechnique {
   Renderer renderer;
   CheckResult result;
 
-  JudgedTechnique(const Model& model, std::string_view id)
+  JudgedTechnique(const ModelView& model, std::string_view id)
       : renderer(model, id), result{std::string(id) + " gives brute force's hits", 0, 0, ""} {}
 
   void judge(const FrameRequest& request, const HitBuffer& truth) {
@@ -190,7 +190,7 @@ struct JudgedTechnique {
   }
 };
 
-CheckResult check_shape(const Model& model, const PoseSequence& source) {
+CheckResult check_shape(const ModelView& model, const PoseSequence& source) {
   CheckResult shape{"the source has the same triangles, clips and key times", 0, 0, ""};
   const auto compare = [&](bool same, const std::string& difference) {
     ++shape.count;
@@ -212,13 +212,13 @@ CheckResult check_shape(const Model& model, const PoseSequence& source) {
 
 }  // namespace
 
-std::uint64_t interval_count(const Model& model) {
+std::uint64_t interval_count(const ModelView& model) {
   std::uint64_t count = 0;
   for (const Clip& clip : model.clips) count += clip.key_count - 1;
   return count;
 }
 
-std::vector<KeyInterval> random_moments(const Model& model, std::uint32_t count,
+std::vector<KeyInterval> random_moments(const ModelView& model, std::uint32_t count,
                                         std::uint64_t seed) {
   std::vector<std::uint32_t> starts;  // the first key of every interval
   for (const Clip& clip : model.clips)
@@ -239,7 +239,7 @@ std::vector<KeyInterval> random_moments(const Model& model, std::uint32_t count,
   return moments;
 }
 
-std::vector<CheckResult> check_boxes(const Model& model, std::span<const KeyInterval> between,
+std::vector<CheckResult> check_boxes(const ModelView& model, std::span<const KeyInterval> between,
                                      ProgressSink& progress) {
   const std::string when[] = {"at keys", "between keys"};
   std::vector<CheckResult> results;
@@ -269,7 +269,7 @@ std::vector<CheckResult> check_boxes(const Model& model, std::span<const KeyInte
   return results;
 }
 
-CheckResult check_trees(const Model& model, ProgressSink& progress) {
+CheckResult check_trees(const ModelView& model, ProgressSink& progress) {
   CheckResult leaves{"leaves list every triangle that reaches into them", 0, 0, ""};
   for (std::size_t i = 0; i < model.fuzzy_trees.size(); ++i) {
     progress.report("trees",
@@ -279,7 +279,7 @@ CheckResult check_trees(const Model& model, ProgressSink& progress) {
   return leaves;
 }
 
-std::vector<CheckResult> check_hits(const Model& model, std::span<const KeyInterval> between,
+std::vector<CheckResult> check_hits(const ModelView& model, std::span<const KeyInterval> between,
                                     ProgressSink& progress) {
   constexpr std::uint32_t kSide = 128;  // pixels
   constexpr std::uint32_t kKeys = 4;    // spread over all clips
@@ -311,7 +311,7 @@ std::vector<CheckResult> check_hits(const Model& model, std::span<const KeyInter
   return results;
 }
 
-std::vector<CheckResult> check_source(const Model& model, const PoseSequence& source) {
+std::vector<CheckResult> check_source(const ModelView& model, const PoseSequence& source) {
   const CheckResult shape = check_shape(model, source);
   if (!shape.passed()) return {shape};
   CheckResult positions{"corners stand where the source has them", 0, 0, ""};

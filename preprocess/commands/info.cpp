@@ -33,7 +33,7 @@ struct ClusterSizes {
   std::uint32_t smallest = 0, largest = 0;
 };
 
-ClusterSizes cluster_sizes(const Model& model) {
+ClusterSizes cluster_sizes(const ModelView& model) {
   ClusterSizes sizes{model.triangle_count(), 0};
   for (const Cluster& cluster : model.clusters) {
     sizes.smallest = std::min(sizes.smallest, cluster.triangle_count);
@@ -51,7 +51,7 @@ struct BoxAreas {
 };
 
 /// Area of all fuzzy boxes of one key's segment, in the world.
-double fuzzy_area_at(const Model& model, std::uint32_t key) {
+double fuzzy_area_at(const ModelView& model, std::uint32_t key) {
   const std::uint32_t segment = segment_of(model, at_key(key));
   const auto maps = model.key_maps(key);
   double sum = 0;
@@ -67,7 +67,7 @@ struct KeyAreas {
   double tight = 0, whole = 0;
 };
 
-KeyAreas tight_area_at(const Model& model, std::uint32_t key) {
+KeyAreas tight_area_at(const ModelView& model, std::uint32_t key) {
   std::vector<Vec3f> pose(model.vertex_count);
   decode_pose(model, key, {0, model.vertex_count}, pose);
   KeyAreas areas;
@@ -75,15 +75,15 @@ KeyAreas tight_area_at(const Model& model, std::uint32_t key) {
   for (const Triangle& triangle : model.triangles) {
     Aabb box;
     for (const std::uint32_t v : triangle.v) box.extend(pose[v]);
-    areas.tight += static_cast<double>(box.surface_area());
+    areas.tight += static_cast<double>(surface_area(box));
     whole.extend(box);
   }
-  areas.whole = static_cast<double>(whole.surface_area());
+  areas.whole = static_cast<double>(surface_area(whole));
   return areas;
 }
 
 /// Cost: O(keys * triangles).
-BoxAreas measure_box_areas(const Model& model) {
+BoxAreas measure_box_areas(const ModelView& model) {
   const std::size_t keys = model.key_count();
   std::vector<double> fuzzy(keys), tight(keys);
   parallel_chunks(keys, 1, [&](std::size_t begin, std::size_t end) {
@@ -100,7 +100,7 @@ BoxAreas measure_box_areas(const Model& model) {
 
 Json json_of(const Vec3f& v) { return Json::array({v.x, v.y, v.z}); }
 
-Json json_of_clips(const Model& model) {
+Json json_of_clips(const ModelView& model) {
   Json clips = Json::array();
   for (const Clip& clip : model.clips)
     clips.push_back({{"name", clip.name},
@@ -110,7 +110,7 @@ Json json_of_clips(const Model& model) {
   return clips;
 }
 
-Json json_of_segments(const Model& model) {
+Json json_of_segments(const ModelView& model) {
   Json segments = Json::array();
   for (const Segment& segment : model.segments)
     segments.push_back({{"first_key", segment.first_key}, {"last_key", segment.last_key}});
@@ -122,7 +122,7 @@ std::string_view pose_kind_name(PoseKind kind) {
   return kind == PoseKind::kQuantized ? "quantized" : "key_positions";
 }
 
-std::string poses_text(const Model& model) {
+std::string poses_text(const ModelView& model) {
   const PoseSource& poses = model.poses;
   const std::uint32_t keys = model.key_count();
   if (poses.kind == PoseKind::kRig)
@@ -144,7 +144,7 @@ Json json_of_poses(const PoseSource& poses) {
 }
 
 void print_json(const MdkFile& file, const InfoArguments& arguments) {
-  const Model& model = file.model();
+  const ModelView& model = file.model();
   Json textures = Json::array();
   for (const Texture& texture : model.appearance.textures)
     textures.push_back({{"width", texture.width}, {"height", texture.height}});
@@ -189,7 +189,7 @@ std::string point_text(const Vec3f& v) {
   return "(" + fixed_text(v.x, 4) + ", " + fixed_text(v.y, 4) + ", " + fixed_text(v.z, 4) + ")";
 }
 
-std::string textures_text(const Model& model) {
+std::string textures_text(const ModelView& model) {
   std::string text = std::to_string(model.appearance.textures.size());
   for (const Texture& texture : model.appearance.textures)
     text += (text.find(' ') == std::string::npos ? " (" : ", ") + std::to_string(texture.width) +
@@ -204,7 +204,7 @@ std::string origin_text(const MdkOrigin& origin) {
 }
 
 /// How many, and the keys of the first few.
-std::string segments_text(const Model& model) {
+std::string segments_text(const ModelView& model) {
   constexpr std::uint32_t kShown = 8;
   std::string text = grouped_text(model.segment_count()) + " (keys";
   for (std::uint32_t s = 0; s < std::min(kShown, model.segment_count()); ++s)
@@ -214,7 +214,7 @@ std::string segments_text(const Model& model) {
 }
 
 void print_facts(const MdkFile& file, const InfoArguments& arguments) {
-  const Model& model = file.model();
+  const ModelView& model = file.model();
   const ClusterSizes sizes = cluster_sizes(model);
   const Clip& rest_clip = model.clips[clip_of_key(model, model.rest_key)];
   TextTable facts(2);
@@ -246,7 +246,7 @@ void print_facts(const MdkFile& file, const InfoArguments& arguments) {
 }
 
 void print_tables(const MdkFile& file) {
-  const Model& model = file.model();
+  const ModelView& model = file.model();
   TextTable clips(1);
   clips.add_row({"clip", "seconds", "keys", "first key", "last key"});
   for (const Clip& clip : model.clips)

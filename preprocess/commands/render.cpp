@@ -42,11 +42,11 @@ struct PlannedFrame {
   double seconds = 0;  ///< from the clip's start
 };
 
-PlannedFrame frame_at_key(const Model& model, std::uint32_t key) {
+PlannedFrame frame_at_key(const ModelView& model, std::uint32_t key) {
   return {at_key(key), clip_of_key(model, key), model.key_times[key]};
 }
 
-std::uint32_t find_clip(const Model& model, const std::string& name) {
+std::uint32_t find_clip(const ModelView& model, const std::string& name) {
   if (name.empty()) return 0;
   std::string known;
   for (std::uint32_t c = 0; c < model.clips.size(); ++c) {
@@ -56,7 +56,7 @@ std::uint32_t find_clip(const Model& model, const std::string& name) {
   throw Error(ErrorCode::kUsage, "--clip " + name + ": no clip has this name; there are: " + known);
 }
 
-PlannedFrame frame_at_time(const Model& model, std::uint32_t clip, double seconds) {
+PlannedFrame frame_at_time(const ModelView& model, std::uint32_t clip, double seconds) {
   const double length = model.clip_seconds(model.clips[clip]);
   if (!(seconds >= 0 && seconds <= length))
     throw Error(ErrorCode::kUsage, "--time " + shortest_text(seconds) + ": clip " +
@@ -66,7 +66,7 @@ PlannedFrame frame_at_time(const Model& model, std::uint32_t clip, double second
 }
 
 /// --frames or --time or, without either, every key of the clip.
-std::vector<PlannedFrame> plan_frames(const RenderArguments& arguments, const Model& model) {
+std::vector<PlannedFrame> plan_frames(const RenderArguments& arguments, const ModelView& model) {
   std::vector<PlannedFrame> frames;
   if (arguments.frames) {
     const KeyRange& range = *arguments.frames;
@@ -96,7 +96,7 @@ double film_rate(const std::vector<PlannedFrame>& frames) {
 }
 
 /// When each sample of a frame is taken, or nothing where all are taken at once.
-std::vector<KeyInterval> moments_of(const Model& model, const PlannedFrame& frame,
+std::vector<KeyInterval> moments_of(const ModelView& model, const PlannedFrame& frame,
                                     const RenderArguments& arguments, const FrameRequest& request) {
   if (arguments.shutter_seconds == 0) return {};
   std::vector<KeyInterval> moments =
@@ -105,7 +105,7 @@ std::vector<KeyInterval> moments_of(const Model& model, const PlannedFrame& fram
   return moments;
 }
 
-Json stats_row(const Model& model, const PlannedFrame& frame, const FrameStats& stats,
+Json stats_row(const ModelView& model, const PlannedFrame& frame, const FrameStats& stats,
                const FrameStats& counted) {
   const WorkPerRay work = work_per_ray(counted.counters, counted.rays);
   return {{"key", frame.at.key0},
@@ -134,7 +134,7 @@ std::string heat_text(const HeatScale& heat) {
 }
 
 /// Renders and writes every frame; returns the rows of --stats.
-Json render_frames(const RenderArguments& arguments, const Model& model,
+Json render_frames(const RenderArguments& arguments, const ModelView& model,
                    const std::vector<PlannedFrame>& frames, Overwrite overwrite) {
   const ImageSize size = arguments.view.size;
   ProgressBar progress(std::cerr, progress_style(arguments.messages));
@@ -210,7 +210,7 @@ void check_outputs(const RenderArguments& arguments, const std::vector<PlannedFr
 void run_render(const RenderArguments& arguments, CommandContext& context) {
   const MachineLimits limits(arguments.machine);
   const MdkFile file(arguments.input);
-  const Model& model = file.model();
+  const ModelView& model = file.model();
   const std::vector<PlannedFrame> frames = plan_frames(arguments, model);
   check_outputs(arguments, frames);
   const LoopCheck interrupts = context.interrupts.defer();

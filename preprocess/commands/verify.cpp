@@ -51,7 +51,7 @@ struct VerifyReport {
   }
 };
 
-std::uint32_t sample_count(const VerifyArguments& arguments, const Model& model) {
+std::uint32_t sample_count(const VerifyArguments& arguments, const ModelView& model) {
   if (arguments.samples) return *arguments.samples;
   return static_cast<std::uint32_t>(
       std::clamp<std::uint64_t>(interval_count(model), kMinSamples, kSampleRange.highest));
@@ -72,7 +72,7 @@ CheckResult check_bytes(const MdkFile& file) {
 
 VerifyReport verify_file(const MdkFile& file, const VerifyArguments& arguments,
                          ProgressSink& progress) {
-  const Model& model = file.model();
+  const ModelView& model = file.model();
   VerifyReport report;
   report.seed = arguments.seed;
   progress.report("checksums", 0);

@@ -106,7 +106,7 @@ std::vector<double> pose_box_areas(const PoseSequence& sequence) {
   std::vector<double> areas(sequence.key_count());
   parallel_chunks(areas.size(), 8, [&](std::size_t begin, std::size_t end) {
     for (std::size_t key = begin; key < end; ++key)
-      areas[key] = pose_box(sequence.pose(static_cast<std::uint32_t>(key))).surface_area();
+      areas[key] = surface_area(pose_box(sequence.pose(static_cast<std::uint32_t>(key))));
   });
   return areas;
 }
@@ -118,7 +118,7 @@ std::vector<double> row_box_areas(const PoseTable& table) {
       Aabbd box;
       for (std::uint32_t v = 0; v < table.vertex_count; ++v)
         box.extend(table.position(static_cast<std::uint32_t>(row), v));
-      areas[row] = box.surface_area();
+      areas[row] = surface_area(box);
     }
   });
   return areas;

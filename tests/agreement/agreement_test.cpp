@@ -21,7 +21,7 @@ using test::ResetIsa;
 /// From outside, close by, inside, along an axis, through a keyhole, and very wide.
 std::vector<Camera> cameras_for(const Aabb& bounds) {
   const Vec3f center = bounds.center();
-  const float size = std::max(bounds.diagonal(), 1e-12f);
+  const float size = std::max(diagonal(bounds), 1e-12f);
   Camera fit = fit_camera(bounds, 1.0), close = fit, inside = fit, axis = fit, keyhole = fit,
          wide = fit;
   close.eye = center + (fit.eye - center) * 0.6f;
@@ -35,7 +35,7 @@ std::vector<Camera> cameras_for(const Aabb& bounds) {
   return {fit, close, inside, axis, keyhole, wide};
 }
 
-std::vector<KeyInterval> moments_of(const Model& model) {
+std::vector<KeyInterval> moments_of(const ModelView& model) {
   std::vector<KeyInterval> moments = {at_key(0), at_key(model.key_count() - 1)};
   std::mt19937 random(7);
   std::uniform_real_distribution<double> when(0, model.clip_seconds(model.clips[0]));
@@ -46,7 +46,7 @@ std::vector<KeyInterval> moments_of(const Model& model) {
 TEST(Agreement, EveryTechniqueOfOursGivesBruteForcesHitsOnEveryScene) {
   for (auto& [name, sequence] : test::agreement_scenes()) {
     const DecomposeResult baked = bake(std::move(sequence));
-    const Model model = baked.model.view();
+    const ModelView model = baked.model.view();
     Renderer oracle(model, "brute-force"), renderer(model, "brute-force");
     std::uint64_t hits = 0;
     for (const Camera& camera : cameras_for(model.bounds))
@@ -71,7 +71,7 @@ TEST(Agreement, HoldsInEveryTimeSegmentAndAtTheCuts) {
   options.segments = 4;
   SilentProgress silent;
   const DecomposeResult baked = decompose(test::bending_tube(30, 16, 13), options, silent);
-  const Model model = baked.model.view();
+  const ModelView model = baked.model.view();
   ASSERT_EQ(model.segment_count(), 4u);
   Renderer oracle(model, "brute-force"), renderer(model, "brute-force");
   const auto expect_agreement = [&](const KeyInterval& at) {
@@ -99,7 +99,7 @@ TEST(Agreement, HoldsInEveryTimeSegmentAndAtTheCuts) {
 TEST(Agreement, HitsAndCountsDoNotDependOnInstructionSetOrThreads) {
   const ResetIsa reset;
   const DecomposeResult baked = bake(test::bending_tube(40, 24, 12));
-  const Model model = baked.model.view();
+  const ModelView model = baked.model.view();
   const FrameRequest request{.at = locate_time(model, 0, 0.111),
                              .camera = fit_camera(model.bounds, 1.5),
                              .width = 150,
@@ -129,7 +129,7 @@ TEST(Agreement, HitsAndCountsDoNotDependOnInstructionSetOrThreads) {
 
 TEST(Agreement, CountsDependOnTheFramesBeforeWhereTheTableSaysSoOnly) {
   const DecomposeResult baked = bake(test::flying_boxes(30, 12));
-  const Model model = baked.model.view();
+  const ModelView model = baked.model.view();
   FrameRequest request{.at = at_key(0),
                        .camera = fit_camera(model.bounds, 1.5),
                        .width = 150,
@@ -163,7 +163,7 @@ bool hit_in_double(const Vec3d& origin, const Vec3d& d, const Vec3d (&v)[3], dou
 
 TEST(Agreement, BruteForceAgreesWithAnIndependentTestInDoubleButForEdges) {
   const DecomposeResult baked = bake(test::bending_tube(20, 16, 4));
-  const Model model = baked.model.view();
+  const ModelView model = baked.model.view();
   const Camera camera = fit_camera(model.bounds, 1.0);
   constexpr std::uint32_t kSide = 128;
   Renderer renderer(model, "brute-force");
@@ -195,7 +195,7 @@ TEST(Agreement, BruteForceAgreesWithAnIndependentTestInDoubleButForEdges) {
 }
 
 /// How many vertices the technique had posed to show the mesh between two keys, lit or not.
-std::size_t posed_to_show(const Model& model, std::string_view id, const Camera& camera) {
+std::size_t posed_to_show(const ModelView& model, std::string_view id, const Camera& camera) {
   PosedMesh mesh(model);
   mesh.set_time({0, 1, 0.5f});
   const std::unique_ptr<Technique> technique = find_technique(id).make(model);
@@ -216,7 +216,7 @@ std::size_t posed_to_show(const Model& model, std::string_view id, const Camera&
 
 TEST(Agreement, FuzzyStructuresPoseOnlyWhatRaysComeNear) {
   const DecomposeResult baked = bake(test::bending_tube(120, 24, 6));
-  const Model model = baked.model.view();
+  const ModelView model = baked.model.view();
   ASSERT_GT(model.cluster_count(), 3u);
   const Camera whole = fit_camera(model.bounds, 1.0);
   Camera away = whole, end = whole;
@@ -234,7 +234,7 @@ TEST(Agreement, FuzzyStructuresPoseOnlyWhatRaysComeNear) {
 
 TEST(Agreement, PicturesDoNotDependOnWhatWasPosedBefore) {
   const DecomposeResult baked = bake(test::bending_tube(120, 24, 6));
-  const Model model = baked.model.view();
+  const ModelView model = baked.model.view();
   FrameRequest close;
   close.camera = fit_camera(model.bounds, 1.0);
   close.width = close.height = 96;
@@ -259,7 +259,7 @@ TEST(Agreement, ClosedMeshShowsNoCracks) {
   // Between the silhouette's ends of every row of pixels a convex closed body has no gap.
   PoseSequence tube = test::bending_tube(60, 48, 1);
   const DecomposeResult baked = bake(std::move(tube));
-  const Model model = baked.model.view();
+  const ModelView model = baked.model.view();
   Camera camera = fit_camera(model.bounds, 1.0);
   camera.eye = model.bounds.center() + Vec3f{0, 0, 6};
   Renderer renderer(model, "fuzzy-kdtree");

@@ -19,7 +19,7 @@ constexpr std::uint32_t kSeed = 5;
 /// Views of a mesh as no one would choose them, each kind in turn.
 class RandomViews {
  public:
-  explicit RandomViews(const Model& model) : model_(model) {}
+  explicit RandomViews(const ModelView& model) : model_(model) {}
 
   FrameRequest next() {
     FrameRequest request;
@@ -27,7 +27,7 @@ class RandomViews {
     request.height = 84;
     request.at = moment();
     const Aabb& bounds = model_.bounds;
-    const float size = std::max(bounds.diagonal(), 1e-12f);
+    const float size = std::max(diagonal(bounds), 1e-12f);
     request.camera = fit_camera(bounds, 1.0);
     Camera& camera = request.camera;
     const Vec3f inside = point_inside();
@@ -94,7 +94,7 @@ class RandomViews {
                        std::uniform_real_distribution<double>(0, 1)(random_) * seconds);
   }
 
-  const Model& model_;
+  const ModelView& model_;
   std::mt19937 random_{kSeed};
   unsigned turn_ = 0;
 };

@@ -65,7 +65,7 @@ bool is_closed(const PosedMesh& mesh) {
 }
 
 /// Vertices that several clusters share; all where there are none.
-std::vector<std::uint32_t> border_vertices(const Model& model) {
+std::vector<std::uint32_t> border_vertices(const ModelView& model) {
   std::vector<std::uint32_t> owner(model.vertex_count, model.cluster_count()), border;
   std::vector<char> shared(model.vertex_count, 0);
   for (std::uint32_t c = 0; c < model.cluster_count(); ++c)
@@ -84,7 +84,7 @@ std::vector<std::uint32_t> border_vertices(const Model& model) {
 
 class LeakHunt {
  public:
-  explicit LeakHunt(const Model& model) : model_(model), border_(border_vertices(model)) {}
+  explicit LeakHunt(const ModelView& model) : model_(model), border_(border_vertices(model)) {}
 
   /// Shoots `rays` rays from inside, divided among the techniques; how many hit nothing.
   std::uint64_t leaks(std::uint64_t rays) {
@@ -115,7 +115,7 @@ class LeakHunt {
     PosedMesh mesh(model_);
     mesh.set_time(request.at);
     const Vec3f target = mesh.positions()[border_[random_() % border_.size()]];
-    const auto reach = static_cast<float>(uniform(0.01, 0.1)) * model_.bounds.diagonal();
+    const auto reach = static_cast<float>(uniform(0.01, 0.1)) * diagonal(model_.bounds);
     const auto any = [&] { return static_cast<float>(uniform(-1, 1)) * reach; };
     request.camera.eye = target + Vec3f{any(), any(), any()};
     request.camera.target = target;
@@ -125,12 +125,12 @@ class LeakHunt {
     return std::abs(winding_number(mesh, to_double(request.camera.eye)) - 1) < 1e-3;
   }
 
-  const Model& model_;
+  const ModelView& model_;
   std::vector<std::uint32_t> border_;
   std::mt19937 random_{kSeed};
 };
 
-void expect_no_leaks(const Model& model, const std::string& name) {
+void expect_no_leaks(const ModelView& model, const std::string& name) {
   PosedMesh mesh(model);
   mesh.set_time(at_key(model.rest_key));
   if (!is_closed(mesh)) {
@@ -151,7 +151,7 @@ TEST(Leaks, NoRayLeavesAClosedMeshInMotion) {
   for (const auto& [name, sequence] : scenes) {
     const DecomposeResult baked = decompose(sequence, options, silent);
     EXPECT_GT(baked.model.clusters.size(), 3u) << name;
-    const Model model = baked.model.view();
+    const ModelView model = baked.model.view();
     PosedMesh mesh(model);
     mesh.set_time(at_key(0));
     EXPECT_TRUE(is_closed(mesh)) << name;

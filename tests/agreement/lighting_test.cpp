@@ -27,7 +27,7 @@ std::vector<std::uint32_t> picture(Renderer& renderer, const FrameRequest& reque
 TEST(LitPictures, AreTheSameWithEveryTechniqueThreadCountAndInstructionSet) {
   const ResetIsa reset;
   const DecomposeResult baked = bake(test::flying_boxes(30, 6));
-  const Model model = baked.model.view();
+  const ModelView model = baked.model.view();
   FrameRequest request{.at = locate_time(model, 0, 0.07),
                        .camera = fit_camera(model.bounds, 1.0),
                        .width = 75,
@@ -123,7 +123,7 @@ class LitView {
  private:
   static constexpr std::uint32_t kSide = 64;
   DecomposeResult baked_;
-  Model model_;
+  ModelView model_;
   std::vector<float> pixels_;
   std::uint64_t rays_ = 0;
 };

@@ -23,7 +23,7 @@ class Random {
   float unit() { return std::uniform_real_distribution<float>(-1, 1)(engine_); }
   std::uint32_t below(std::size_t n) { return static_cast<std::uint32_t>(engine_() % n); }
   Vec3f point() { return {unit(), unit(), unit()}; }
-  KeyInterval moment(const Model& model) {
+  KeyInterval moment(const ModelView& model) {
     if (below(3) == 0) return at_key(below(model.key_count()));
     const double part = (static_cast<double>(unit()) + 1) / 2;
     return locate_time(model, 0, part * model.clip_seconds(model.clips[0]));
@@ -41,7 +41,7 @@ Vec3f some_direction(Random& random) {
 
 /// Rays from a patch of the mesh, from all over its bounds, or in line with its vertices.
 RayBeam make_beam(const PosedMesh& mesh, Random& random) {
-  const Model& model = mesh.model();
+  const ModelView& model = mesh.model();
   const Vec3f center = model.bounds.center();
   const Vec3f half = model.bounds.extent() * 0.5f;
   const float reach = std::max(2 * (half.x + half.y + half.z), 1e-30f);
@@ -78,7 +78,7 @@ TEST(Occlusion, EveryTechniqueOfOursFindsBruteForcesRaysOnEveryScene) {
   const ResetIsa reset;
   for (auto& [name, sequence] : test::agreement_scenes()) {
     const DecomposeResult baked = bake(std::move(sequence));
-    const Model model = baked.model.view();
+    const ModelView model = baked.model.view();
     std::vector<std::unique_ptr<Technique>> techniques;
     std::vector<std::string_view> ids;
     for (const TechniqueInfo& row : technique_table()) {
@@ -138,7 +138,7 @@ PlainAnswer plain_test(const Vec3d (&corner)[3], const Vec3d& o, const Vec3d& d)
 
 TEST(Occlusion, BruteForceAgreesWithAPlainTestInDouble) {
   const DecomposeResult baked = bake(test::bending_tube(12, 10, 3));
-  const Model model = baked.model.view();
+  const ModelView model = baked.model.view();
   PosedMesh mesh(model);
   mesh.set_time(at_key(1));
   TraceScene scene;
@@ -180,7 +180,7 @@ TEST(Occlusion, NoRayLeavesAClosedMeshInMotion) {
   constexpr std::uint32_t kRings = 40, kAround = 24;
   const PoseSequence tube = test::bending_tube(kRings, kAround, 12);
   const DecomposeResult baked = bake(test::bending_tube(kRings, kAround, 12));
-  const Model model = baked.model.view();
+  const ModelView model = baked.model.view();
   const auto technique = find_technique("fuzzy-bvh").make(model);
   Random random(23);
   TileScratch scratch;

@@ -61,7 +61,7 @@ double edge_distance(const ImagePoint& p, const ImagePoint (&corner)[3]) {
 /// Compares two pictures of the same request pixel by pixel.
 class PeerComparison {
  public:
-  PeerComparison(const Model& model, const FrameRequest& request)
+  PeerComparison(const ModelView& model, const FrameRequest& request)
       : model_(model),
         mesh_(model),
         projection_(make_pinhole_rays(request.camera, request.width, request.height)) {
@@ -94,14 +94,14 @@ class PeerComparison {
             projection_(mesh_.positions()[v[2]])});
   }
 
-  const Model& model_;
+  const ModelView& model_;
   PosedMesh mesh_;
   Projection projection_;
   int different_ = 0;
 };
 
 /// Five moments of 600 x 400 pixels, by each instruction set and peer.
-void expect_edges_only(const Model& model, const std::string& name) {
+void expect_edges_only(const ModelView& model, const std::string& name) {
   constexpr int kMoments = 5, kMaxDifferent = 10;
   Renderer ours(model, "fuzzy-bvh");  // brute force's hits, as all of agreement_test says
   for (const TechniqueInfo& technique : technique_table()) {

@@ -1,6 +1,6 @@
 // Single rays at times of their own against brute force, bit for bit, and against an independent
 // scalar test; closed meshes in motion leak nothing.
-#include "common/trace/ray_query.h"
+#include "mdk/ray_query.h"
 
 #include <gtest/gtest.h>
 
@@ -11,6 +11,8 @@
 
 #include "common/base/isa.h"
 #include "common/base/parallel.h"
+#include "common/motion/model_handle.h"
+#include "common/trace/brute_force.h"
 #include "tests/agreement/test_scenes.h"
 
 namespace mdk {
@@ -20,7 +22,7 @@ using test::bake;
 using test::ResetIsa;
 
 /// All vertices at a moment.
-std::vector<Vec3f> vertices_at(const Model& model, const KeyInterval& at) {
+std::vector<Vec3f> vertices_at(const ModelView& model, const KeyInterval& at) {
   PosedMesh mesh(model);
   mesh.set_time(at);
   return {mesh.positions().begin(), mesh.positions().end()};
@@ -35,7 +37,7 @@ bool is_same(const QueryHit& a, const QueryHit& b) {
 /// Rays of all kinds: from outside and inside, at vertices and edges, along axes, of odd lengths.
 class RayMaker {
  public:
-  RayMaker(const Model& model, std::uint32_t seed) : model_(model), random_(seed) {}
+  RayMaker(const ModelView& model, std::uint32_t seed) : model_(model), random_(seed) {}
 
   KeyInterval time() {
     const double seconds = model_.clip_seconds(model_.clips[0]);
@@ -43,7 +45,7 @@ class RayMaker {
     return locate_time(model_, 0, (unit() + 1) / 2 * seconds);
   }
   QueryRay ray(const KeyInterval& at) {
-    const float size = std::max(model_.bounds.diagonal(), 1e-12f);
+    const float size = std::max(diagonal(model_.bounds), 1e-12f);
     const Vec3f center = model_.bounds.center();
     const float reach = random_() % 3 == 0 ? 0.2f : 1.5f;
     QueryRay ray;
@@ -73,7 +75,7 @@ class RayMaker {
     }
   }
 
-  const Model& model_;
+  const ModelView& model_;
   std::mt19937 random_;
 };
 
@@ -81,8 +83,8 @@ TEST(RayQuery, GivesBruteForcesHitAtEveryRaysOwnTime) {
   const ResetIsa reset;
   for (auto& [name, sequence] : test::agreement_scenes()) {
     const DecomposeResult baked = bake(std::move(sequence));
-    const Model model = baked.model.view();
-    const RayQuery query(model);
+    const ModelView model = baked.model.view();
+    const RayQuery query(ModelHandle::make(model));
     RayMaker make(model, 11);
     int hits = 0;
     for (int i = 0; i < 300; ++i) {
@@ -90,12 +92,12 @@ TEST(RayQuery, GivesBruteForcesHitAtEveryRaysOwnTime) {
       const QueryRay ray = make.ray(at);
       reset_isa();
       const QueryHit expected = brute_force_closest_hit(model, ray, at);
-      hits += expected.triangle != kNoHit;
+      hits += expected.triangle != kNoTriangle;
       for (const std::string_view isa : available_isas()) {
         limit_isa(isa);
         EXPECT_TRUE(is_same(query.closest_hit(ray, at), expected))
             << name << ", ray " << i << ", " << isa << ": " << expected.triangle;
-        EXPECT_EQ(query.any_hit(ray, at), expected.triangle != kNoHit) << name << " " << i;
+        EXPECT_EQ(query.any_hit(ray, at), expected.triangle != kNoTriangle) << name << " " << i;
       }
     }
     EXPECT_GT(hits, 30) << name;
@@ -103,7 +105,7 @@ TEST(RayQuery, GivesBruteForcesHitAtEveryRaysOwnTime) {
 }
 
 /// The formula of the kernel's head comment, written plainly: one triangle at a time.
-QueryHit plain_closest_hit(const Model& model, const QueryRay& ray, const KeyInterval& at) {
+QueryHit plain_closest_hit(const ModelView& model, const QueryRay& ray, const KeyInterval& at) {
   const Vec3d o = to_double(ray.origin), d = to_double(ray.direction);
   const std::vector<Vec3f> vertices = vertices_at(model, at);
   QueryHit best;
@@ -138,7 +140,7 @@ QueryHit plain_closest_hit(const Model& model, const QueryRay& ray, const KeyInt
 
 TEST(RayQuery, BruteForceAgreesWithAPlainLoopOverTriangles) {
   const DecomposeResult baked = bake(test::bending_tube(20, 16, 4));
-  const Model model = baked.model.view();
+  const ModelView model = baked.model.view();
   RayMaker make(model, 5);
   int hits = 0;
   for (int i = 0; i < 500; ++i) {
@@ -146,7 +148,7 @@ TEST(RayQuery, BruteForceAgreesWithAPlainLoopOverTriangles) {
     const QueryRay ray = make.ray(at);
     const QueryHit expected = plain_closest_hit(model, ray, at);
     const QueryHit got = brute_force_closest_hit(model, ray, at);
-    hits += expected.triangle != kNoHit;
+    hits += expected.triangle != kNoTriangle;
     EXPECT_EQ(got.triangle, expected.triangle) << i;
     EXPECT_EQ(got.t, expected.t) << i;
   }
@@ -155,13 +157,13 @@ TEST(RayQuery, BruteForceAgreesWithAPlainLoopOverTriangles) {
 
 TEST(RayQuery, RangesOfTAreOpenBelowAndClosedAbove) {
   const DecomposeResult baked = bake(test::bending_tube(20, 16, 4));
-  const Model model = baked.model.view();
-  const RayQuery query(model);
+  const ModelView model = baked.model.view();
+  const RayQuery query(ModelHandle::make(model));
   const KeyInterval at = at_key(1);
   const Vec3f on_mesh = vertices_at(model, at)[model.triangles[40].v[0]];
   QueryRay ray{.origin = on_mesh + Vec3f{0.3f, 1, 10}, .direction = Vec3f{0.3f, 1, 10} * -0.3f};
   const QueryHit first = query.closest_hit(ray, at);
-  ASSERT_NE(first.triangle, kNoHit);
+  ASSERT_NE(first.triangle, kNoTriangle);
   ray.t_max = first.t;
   EXPECT_TRUE(is_same(query.closest_hit(ray, at), first));
   EXPECT_TRUE(query.any_hit(ray, at));
@@ -175,8 +177,8 @@ TEST(RayQuery, RangesOfTAreOpenBelowAndClosedAbove) {
 TEST(RayQuery, RangesThatBeginBehindTheOriginGiveBruteForcesHit) {
   const ResetIsa reset;
   const DecomposeResult baked = bake(test::bending_tube(20, 16, 4));
-  const Model model = baked.model.view();
-  const RayQuery query(model);
+  const ModelView model = baked.model.view();
+  const RayQuery query(ModelHandle::make(model));
   RayMaker make(model, 29);
   const float inf = std::numeric_limits<float>::infinity();
   int behind = 0;
@@ -184,15 +186,16 @@ TEST(RayQuery, RangesThatBeginBehindTheOriginGiveBruteForcesHit) {
     const KeyInterval at = make.time();
     QueryRay ray = make.ray(at);
     if (i % 8 != 0) ray.direction = -ray.direction;  // what it is aimed at is behind
-    const float unit = model.bounds.diagonal() / length(ray.direction);
+    const float unit = diagonal(model.bounds) / length(ray.direction);
     ray.t_min = i % 4 == 0 ? -inf : -static_cast<float>(i % 7) * 0.3f * unit;
     if (i % 3 == 0) ray.t_max = i % 2 == 0 ? 0 : ray.t_min * 0.25f;  // all of it behind
     const QueryHit expected = brute_force_closest_hit(model, ray, at);
-    behind += expected.triangle != kNoHit && expected.t < 0;
+    behind += expected.triangle != kNoTriangle && expected.t < 0;
     for (const std::string_view isa : available_isas()) {
       limit_isa(isa);
       EXPECT_TRUE(is_same(query.closest_hit(ray, at), expected)) << "ray " << i << ", " << isa;
-      EXPECT_EQ(query.any_hit(ray, at), expected.triangle != kNoHit) << "ray " << i << ", " << isa;
+      EXPECT_EQ(query.any_hit(ray, at), expected.triangle != kNoTriangle)
+          << "ray " << i << ", " << isa;
     }
     reset_isa();
   }
@@ -201,8 +204,8 @@ TEST(RayQuery, RangesThatBeginBehindTheOriginGiveBruteForcesHit) {
 
 TEST(RayQuery, AListAtMixedTimesGivesWhatEachRayGivesOnAnyNumberOfThreads) {
   const DecomposeResult baked = bake(test::flying_boxes(12, 6));
-  const Model model = baked.model.view();
-  const RayQuery query(model);
+  const ModelView model = baked.model.view();
+  const RayQuery query(ModelHandle::make(model));
   RayMaker make(model, 3);
   std::vector<QueryRay> rays;
   std::vector<KeyInterval> times;
@@ -210,25 +213,25 @@ TEST(RayQuery, AListAtMixedTimesGivesWhatEachRayGivesOnAnyNumberOfThreads) {
   for (int i = 0; i < 1000; ++i) {
     times.push_back(make.time());
     rays.push_back(make.ray(times.back()));
-    expected.push_back(query.closest_hit(rays.back(), *query.prepare(times.back())));
+    expected.push_back(query.closest_hit(rays.back(), query.prepare(times.back())));
   }
   for (const int threads : {1, 2}) {
     const ThreadLimit limit(threads);
     std::vector<QueryHit> hits(rays.size());
     std::vector<std::uint8_t> shadows(rays.size());
-    query.closest_hits(rays, times, hits);
-    query.any_hits(rays, times, shadows);
+    query.closest_hits(rays.data(), times.data(), hits.data(), rays.size());
+    query.any_hits(rays.data(), times.data(), shadows.data(), rays.size());
     for (std::size_t i = 0; i < rays.size(); ++i) {
       EXPECT_TRUE(is_same(hits[i], expected[i])) << i;
-      EXPECT_EQ(shadows[i] != 0, expected[i].triangle != kNoHit) << i;
+      EXPECT_EQ(shadows[i] != 0, expected[i].triangle != kNoTriangle) << i;
     }
   }
 }
 
 TEST(RayQuery, RaysWithoutDirectionOrSenseHitNothing) {
   const DecomposeResult baked = bake(test::bending_tube(10, 8, 2));
-  const Model model = baked.model.view();
-  const RayQuery query(model);
+  const ModelView model = baked.model.view();
+  const RayQuery query(ModelHandle::make(model));
   const float nan = std::nanf(""), inf = std::numeric_limits<float>::infinity();
   const Vec3f inside = model.bounds.center();
   for (const QueryRay& ray : {QueryRay{inside, {0, 0, 0}}, QueryRay{inside, {nan, 1, 0}},
@@ -239,7 +242,7 @@ TEST(RayQuery, RaysWithoutDirectionOrSenseHitNothing) {
 
 /// Whether a point is inside the closed mesh: by the crossings of rays in three odd directions,
 /// counted with Möller and Trumbore's test in double.
-bool is_inside(const Model& model, const Vec3f& point, const KeyInterval& at) {
+bool is_inside(const ModelView& model, const Vec3f& point, const KeyInterval& at) {
   const Vec3d o = to_double(point);
   const std::vector<Vec3f> vertices = vertices_at(model, at);
   int votes = 0;
@@ -264,8 +267,8 @@ TEST(RayQuery, NoRayLeavesAClosedMeshInMotion) {
   // From the axis of a bent, swelling tube every ray must hit its wall, at every time; most are
   // aimed at vertices and edges, where neighbours meet and clusters part.
   const DecomposeResult baked = bake(test::bending_tube(40, 24, 12));
-  const Model model = baked.model.view();
-  const RayQuery query(model);
+  const ModelView model = baked.model.view();
+  const RayQuery query(ModelHandle::make(model));
   constexpr std::size_t kRays = 100'000;
   constexpr float kInward = -1;  // the corners run counter-clockwise seen from outside
   std::mt19937 random(20);
@@ -289,7 +292,7 @@ TEST(RayQuery, NoRayLeavesAClosedMeshInMotion) {
     if (random() % 2 == 0) rays[i].direction = -rays[i].direction;
   }
   std::vector<std::uint8_t> hits(kRays);
-  query.any_hits(rays, times, hits);
+  query.any_hits(rays.data(), times.data(), hits.data(), kRays);
   int outside = 0, leaks = 0;
   for (std::size_t i = 0; i < kRays; ++i) {
     if (hits[i] != 0) continue;

@@ -48,13 +48,13 @@ class Sheet {
     triangle_boxes(*mesh_, boxes_);
   }
 
-  const Model& model() const { return model_; }
+  const ModelView& model() const { return model_; }
   PosedMesh& mesh() { return *mesh_; }
   const std::vector<Aabb>& boxes() const { return boxes_; }
 
  private:
   ModelStorage storage_;
-  Model model_;
+  ModelView model_;
   std::unique_ptr<PosedMesh> mesh_;
   std::vector<Aabb> boxes_;
 };

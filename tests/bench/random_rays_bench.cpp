@@ -16,9 +16,9 @@
 #include <random>
 #include <vector>
 
+#include "common/motion/model_handle.h"
 #include "common/motion/posed_mesh.h"
-#include "common/trace/ray_query.h"
-#include "formats/mdk/mdk_file.h"
+#include "mdk/ray_query.h"
 
 namespace {
 
@@ -59,11 +59,11 @@ std::vector<mdk::QueryRay> random_lines(const mdk::Aabb& box, std::mt19937_64& e
 }
 
 /// Clusters whose world boxes a line that hits the model's box is expected to enter.
-double clusters_entered(const mdk::Model& model, std::uint32_t key, const mdk::Aabb& box) {
+double clusters_entered(const mdk::ModelView& model, std::uint32_t key, const mdk::Aabb& box) {
   double area = 0;
   for (std::size_t c = 0; c < model.cluster_count(); ++c)
-    area += model.world_box(key, c).surface_area();
-  return area / box.surface_area();
+    area += surface_area(model.world_box(key, c));
+  return area / surface_area(box);
 }
 
 struct Cost {
@@ -88,9 +88,9 @@ Cost cost_of(const mdk::RayQuery& query, const std::vector<mdk::QueryRay>& rays,
 }
 
 void measure(const char* path) {
-  const mdk::MdkFile file(path);
-  const mdk::Model& model = file.model();
-  const mdk::RayQuery query(model);
+  const mdk::Model loaded = mdk::Model::load(path);
+  const mdk::ModelView& model = mdk::ModelHandle::view(loaded);
+  const mdk::RayQuery query(loaded);
   mdk::PosedMesh mesh(model);
   std::mt19937_64 engine(1);
   const std::uint32_t keys = std::min(kKeys, model.key_count());
@@ -99,8 +99,8 @@ void measure(const char* path) {
     const std::uint32_t key = i * model.key_count() / keys;
     const mdk::KeyInterval at = mdk::at_key(key);
     const mdk::Aabb box = box_at(mesh, at);
-    const auto moment = query.prepare(at);
-    const Cost cost = cost_of(query, random_lines(box, engine), *moment);
+    const mdk::QueryMoment moment = query.prepare(at);
+    const Cost cost = cost_of(query, random_lines(box, engine), moment);
     mean.entered += clusters_entered(model, key, box) / keys;
     mean.nanoseconds += cost.nanoseconds / keys;
     mean.hits += cost.hits / keys;

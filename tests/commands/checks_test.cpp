@@ -23,7 +23,7 @@ class ModelChecks : public testing::Test {
   }
 
   std::vector<CheckResult> boxes() const {
-    const Model view = model_.view();
+    const ModelView view = model_.view();
     SilentProgress silent;
     return check_boxes(view, random_moments(view, 100, kSeed), silent);
   }
@@ -70,7 +70,7 @@ TEST_F(ModelChecks, AtAKeyThatTwoSegmentsShareTheBoxesOfBothAreLookedAt) {
     ModelStorage wrong = model_;
     QuantizedBox& box = wrong.fuzzy_boxes[segment * model_.triangles.size() + 9];
     box.hi = box.lo;
-    const Model view = wrong.view();
+    const ModelView view = wrong.view();
     SilentProgress silent;
     const std::vector<CheckResult> results = check_boxes(view, {}, silent);
     const std::uint32_t keys = view.segments[segment].last_key - view.segments[segment].first_key;
@@ -141,7 +141,7 @@ TEST_F(ModelChecks, AFlatBoxInASplitPlaneMayStandOnEitherSideButNotOnNone) {
 }
 
 TEST_F(ModelChecks, EveryTechniqueAgreesOnASoundModel) {
-  const Model view = model_.view();
+  const ModelView view = model_.view();
   SilentProgress silent;
   const std::vector<CheckResult> results = check_hits(view, random_moments(view, 2, kSeed), silent);
   EXPECT_EQ(failed(results), Names{});
@@ -153,7 +153,7 @@ TEST_F(ModelChecks, EveryTechniqueAgreesOnASoundModel) {
 }
 
 TEST_F(ModelChecks, RandomMomentsVisitEveryIntervalAndNoGapBetweenClips) {
-  const Model view = model_.view();
+  const ModelView view = model_.view();
   ASSERT_EQ(interval_count(view), 30u + 15u);
   const std::vector<KeyInterval> moments = random_moments(view, 45, kSeed);
   std::vector<int> visits(view.key_count(), 0);
@@ -168,7 +168,7 @@ TEST_F(ModelChecks, RandomMomentsVisitEveryIntervalAndNoGapBetweenClips) {
 }
 
 TEST_F(ModelChecks, RandomMomentsDependOnTheSeedAlone) {
-  const Model view = model_.view();
+  const ModelView view = model_.view();
   EXPECT_EQ(random_moments(view, 50, 1), random_moments(view, 50, 1));
   EXPECT_NE(random_moments(view, 50, 1), random_moments(view, 50, 2));
 }

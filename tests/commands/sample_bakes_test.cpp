@@ -45,7 +45,7 @@ class SampleBake : public testing::TestWithParam<Sample> {};
 
 TEST_P(SampleBake, HoldsItsTrianglesAtThousandsOfRandomTimes) {
   const DecomposeResult result = bake(read_sample(GetParam()));
-  const Model model = result.model.view();
+  const ModelView model = result.model.view();
   SilentProgress progress;
   std::printf("seed %llu\n", static_cast<unsigned long long>(kSeed));
   for (const CheckResult& check :

@@ -150,8 +150,8 @@ double cheapest_by_force(const std::vector<Aabb>& boxes) {
         ++(first ? below_count : above_count);
       }
       if (below_count == 0 || above_count == 0) continue;
-      best = std::min(best, static_cast<double>(below.surface_area()) * below_count +
-                                static_cast<double>(above.surface_area()) * above_count);
+      best = std::min(best, static_cast<double>(surface_area(below)) * below_count +
+                                static_cast<double>(surface_area(above)) * above_count);
     }
   return best;
 }
@@ -185,7 +185,7 @@ TEST(Bvh, WithManyBinsFindsTheBestSplitOfAFew) {
         else
           stack.insert(stack.end(), {node.first, node.first + 1});
       }
-      cost += static_cast<double>(bvh.nodes[child].box().surface_area()) * items;
+      cost += static_cast<double>(surface_area(bvh.nodes[child].box())) * items;
     }
     const double best = cheapest_by_force(boxes);
     ASSERT_NEAR(cost, best, 1e-5 * best) << "seed " << seed << " round " << round;

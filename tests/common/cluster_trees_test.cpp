@@ -34,7 +34,7 @@ ModelStorage two_clusters() {
 
 TEST(ClusterTrees, HoldEachTriangleOnce) {
   const ModelStorage storage = two_clusters();
-  const Model model = storage.view();
+  const ModelView model = storage.view();
   const ClusterTrees trees = build_cluster_trees(model, 0);
   EXPECT_EQ(validate(trees, model), "");
   EXPECT_GE(trees.blocks.size(), 4u);
@@ -42,7 +42,7 @@ TEST(ClusterTrees, HoldEachTriangleOnce) {
 
 TEST(ClusterTrees, ValidateSeesWhatIsWrong) {
   const ModelStorage storage = two_clusters();
-  const Model model = storage.view();
+  const ModelView model = storage.view();
   const ClusterTrees sound = build_cluster_trees(model, 0);
   const auto verdict = [&](auto&& damage) {
     ClusterTrees trees = sound;

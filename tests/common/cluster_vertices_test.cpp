@@ -27,7 +27,7 @@ ModelStorage random_clusters(std::uint32_t seed) {
   return m;
 }
 
-std::set<std::uint32_t> used_by(const Model& model, std::uint32_t c) {
+std::set<std::uint32_t> used_by(const ModelView& model, std::uint32_t c) {
   std::set<std::uint32_t> used;
   for (const Triangle& t :
        model.triangles.subspan(model.clusters[c].first_triangle, model.clusters[c].triangle_count))
@@ -42,7 +42,7 @@ bool meet(const std::set<std::uint32_t>& a, const std::set<std::uint32_t>& b) {
 TEST(ClusterVertices, EveryUsedVertexHasOneOwnerThatUsesIt) {
   for (std::uint32_t seed = 1; seed <= 20; ++seed) {
     const ModelStorage storage = random_clusters(seed);
-    const Model model = storage.view();
+    const ModelView model = storage.view();
     const ClusterVertices vertices(model);
     std::set<std::uint32_t> seen;
     for (std::uint32_t c = 0; c < model.cluster_count(); ++c) {
@@ -61,7 +61,7 @@ TEST(ClusterVertices, EveryUsedVertexHasOneOwnerThatUsesIt) {
 TEST(ClusterVertices, OwnersOfAClusterOwnAllItsCornersAndNoneIsIdle) {
   for (std::uint32_t seed = 1; seed <= 20; ++seed) {
     const ModelStorage storage = random_clusters(seed);
-    const Model model = storage.view();
+    const ModelView model = storage.view();
     const ClusterVertices vertices(model);
     for (std::uint32_t c = 0; c < model.cluster_count(); ++c) {
       const std::set<std::uint32_t> used = used_by(model, c);
@@ -81,7 +81,7 @@ TEST(ClusterVertices, OwnersOfAClusterOwnAllItsCornersAndNoneIsIdle) {
 TEST(ClusterVertices, AroundAreThoseThatShareAVertex) {
   for (std::uint32_t seed = 1; seed <= 20; ++seed) {
     const ModelStorage storage = random_clusters(seed);
-    const Model model = storage.view();
+    const ModelView model = storage.view();
     const ClusterVertices vertices(model);
     for (std::uint32_t a = 0; a < model.cluster_count(); ++a)
       for (std::uint32_t b = 0; b < model.cluster_count(); ++b) {

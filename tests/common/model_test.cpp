@@ -23,7 +23,7 @@ ModelStorage three_clips() {
 
 TEST(LocateTime, GivesAKeyAloneAtItsExactTime) {
   const ModelStorage storage = three_clips();
-  const Model model = storage.view();
+  const ModelView model = storage.view();
   for (std::uint32_t c = 0; c < model.clips.size(); ++c) {
     const Clip& clip = model.clips[c];
     for (std::uint32_t k = clip.first_key; k < clip.first_key + clip.key_count; ++k) {
@@ -34,7 +34,7 @@ TEST(LocateTime, GivesAKeyAloneAtItsExactTime) {
 
 TEST(LocateTime, LiesLinearlyBetweenNeighbours) {
   const ModelStorage storage = three_clips();
-  const Model model = storage.view();
+  const ModelView model = storage.view();
   EXPECT_EQ(locate_time(model, 0, 0.125), (KeyInterval{0, 1, 0.25f}));
   EXPECT_EQ(locate_time(model, 0, 1.25), (KeyInterval{1, 2, 0.5f}));
   EXPECT_EQ(locate_time(model, 2, 0.625), (KeyInterval{4, 5, 0.5f}));
@@ -43,7 +43,7 @@ TEST(LocateTime, LiesLinearlyBetweenNeighbours) {
 
 TEST(LocateTime, ClampsToTheClipAndTakesNanAsItsStart) {
   const ModelStorage storage = three_clips();
-  const Model model = storage.view();
+  const ModelView model = storage.view();
   EXPECT_EQ(locate_time(model, 0, -1), at_key(0));
   EXPECT_EQ(locate_time(model, 0, 3), at_key(2));
   EXPECT_EQ(locate_time(model, 1, 0), at_key(3));
@@ -56,7 +56,7 @@ TEST(LocateTime, ClampsToTheClipAndTakesNanAsItsStart) {
 
 TEST(LocateTime, NeverGivesOneOrZeroBetweenKeys) {
   const ModelStorage storage = three_clips();
-  const Model model = storage.view();
+  const ModelView model = storage.view();
   // One step before a key: as a float, s would be 1.
   EXPECT_EQ(locate_time(model, 0, std::nextafter(0.5, 0.0)), at_key(1));
   EXPECT_EQ(locate_time(model, 0, std::nextafter(2.0, 0.0)), at_key(2));
@@ -90,14 +90,14 @@ TEST(LocateTime, SurvivesTimesThatSpanTheDoubles) {
   storage.clips = {{"wide", 0, 3}};
   storage.key_times = {0, std::numeric_limits<double>::denorm_min(),
                        std::numeric_limits<double>::max()};
-  const Model model = storage.view();
+  const ModelView model = storage.view();
   const KeyInterval at = locate_time(model, 0, std::numeric_limits<double>::max() / 2);
   EXPECT_EQ(at, (KeyInterval{1, 2, 0.5f}));
 }
 
 TEST(ClipOfKey, FindsTheClipThatHoldsTheKey) {
   const ModelStorage storage = three_clips();
-  const Model model = storage.view();
+  const ModelView model = storage.view();
   const std::uint32_t expected[] = {0, 0, 0, 1, 2, 2, 2, 2};
   for (std::uint32_t key = 0; key < 8; ++key) EXPECT_EQ(clip_of_key(model, key), expected[key]);
 }
@@ -108,7 +108,7 @@ TEST(ClipBounds, HoldTheMeshAtEveryKeyOfTheClipAndNoOther) {
     const auto at = static_cast<float>(2 * i);
     storage.key_boxes.push_back({{at, 0, 0}, {at + 2, 1, 1}});
   }
-  const Model model = storage.view();
+  const ModelView model = storage.view();
   EXPECT_EQ(clip_bounds(model, 0), (Aabb{{0, 0, 0}, {6, 1, 1}}));
   EXPECT_EQ(clip_bounds(model, 1), (Aabb{{6, 0, 0}, {8, 1, 1}}));
   EXPECT_EQ(clip_bounds(model, 2), (Aabb{{8, 0, 0}, {16, 1, 1}}));

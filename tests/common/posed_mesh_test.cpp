@@ -35,7 +35,7 @@ ModelStorage two_keys(std::uint32_t vertices) {
 
 TEST(PosedMesh, AtAKeyThePoseIsTheModelsOwnMemory) {
   const ModelStorage storage = two_keys(30);
-  const Model model = storage.view();
+  const ModelView model = storage.view();
   PosedMesh mesh(model);
   mesh.set_time(at_key(1));
   EXPECT_EQ(mesh.positions().data(), &model.poses.key_positions[30]);
@@ -43,7 +43,7 @@ TEST(PosedMesh, AtAKeyThePoseIsTheModelsOwnMemory) {
 
 TEST(PosedMesh, BetweenKeysVerticesMoveLinearly) {
   const ModelStorage storage = two_keys(30);
-  const Model model = storage.view();
+  const ModelView model = storage.view();
   PosedMesh mesh(model);
   mesh.set_time({0, 1, 0.25f});
   for (std::uint32_t i = 0; i < 30; ++i) {
@@ -64,7 +64,7 @@ ModelStorage rigged(std::uint32_t vertices) {
 
 TEST(PosedMesh, DecodedPosesDoNotDependOnWhatWasDecodedBefore) {
   const ModelStorage storage = rigged(5000);
-  const Model model = storage.view();
+  const ModelView model = storage.view();
   PosedMesh wandering(model);
   for (const KeyInterval& at :
        {at_key(2), KeyInterval{1, 2, 0.5f}, KeyInterval{2, 3, 0.25f}, at_key(3), at_key(0),
@@ -79,7 +79,7 @@ TEST(PosedMesh, DecodedPosesDoNotDependOnWhatWasDecodedBefore) {
 
 TEST(PosedMesh, BetweenKeysDecodedVerticesMoveLinearly) {
   const ModelStorage storage = rigged(100);
-  const Model model = storage.view();
+  const ModelView model = storage.view();
   std::vector<Vec3f> from(100), to(100);
   decode_pose(model, 1, {0, 100}, from);
   decode_pose(model, 2, {0, 100}, to);
@@ -102,7 +102,7 @@ ModelStorage clustered(ModelStorage m, std::uint32_t each) {
 
 TEST(PosedMesh, PosesOnlyTheClustersThatAreAskedFor) {
   const ModelStorage rig = clustered(rigged(5000), 100), keys = clustered(two_keys(5000), 100);
-  for (const Model& model : {rig.view(), keys.view()}) {
+  for (const ModelView& model : {rig.view(), keys.view()}) {
     const KeyInterval at{0, 1, 0.5f};
     PosedMesh whole(model), part(model);
     whole.set_time(at);
@@ -124,7 +124,7 @@ TEST(PosedMesh, PosesOnlyTheClustersThatAreAskedFor) {
 
 TEST(PosedMesh, WhatWasDecodedInPartIsCompletedAtOtherMoments) {
   const ModelStorage storage = clustered(rigged(3000), 50);
-  const Model model = storage.view();
+  const ModelView model = storage.view();
   PosedMesh wandering(model);
   std::mt19937 random(11);
   const KeyInterval moments[] = {at_key(1), {1, 2, 0.5f}, {1, 2, 0.75f}, at_key(2), {2, 3, 0.25f}};
@@ -147,7 +147,7 @@ TEST(PosedMesh, WhatWasDecodedInPartIsCompletedAtOtherMoments) {
 
 TEST(PosedMesh, ManyThreadsMayAskForTheSameClusters) {
   const ModelStorage storage = clustered(rigged(20000), 300);
-  const Model model = storage.view();
+  const ModelView model = storage.view();
   PosedMesh asked(model), whole(model);
   for (int round = 0; round < 20; ++round) {
     const KeyInterval at{0, 1, 0.02f + 0.04f * static_cast<float>(round)};
@@ -168,7 +168,7 @@ TEST(PosedMesh, ManyThreadsMayAskForTheSameClusters) {
 
 TEST(PosedMesh, AnyRangeOfVerticesDecodesToTheSameBits) {
   const ModelStorage rig = rigged(300), keys = two_keys(300);
-  for (const Model& model : {rig.view(), keys.view()}) {
+  for (const ModelView& model : {rig.view(), keys.view()}) {
     std::vector<Vec3f> all(300), part(300);
     decode_pose(model, 1, {0, 300}, all);
     for (const VertexRange range : {VertexRange{0, 1}, {17, 17}, {5, 130}, {299, 300}}) {
@@ -181,7 +181,7 @@ TEST(PosedMesh, AnyRangeOfVerticesDecodesToTheSameBits) {
 
 TEST(PosedMesh, TriangleBoxesHoldTheirCornersTightly) {
   const ModelStorage storage = two_keys(60);
-  const Model model = storage.view();
+  const ModelView model = storage.view();
   PosedMesh mesh(model);
   mesh.set_time({0, 1, 0.7f});
   std::vector<Aabb> boxes(model.triangle_count());
@@ -198,20 +198,20 @@ TEST(PosedMesh, BoxesAreFiniteWhateverTheCornersAre) {
   const float inf = std::numeric_limits<float>::infinity();
   storage.poses.key_positions[1] = {std::nanf(""), 0, 0};
   for (int i = 3; i < 6; ++i) storage.poses.key_positions[i] = {std::nanf(""), inf, -inf};
-  const Model model = storage.view();
+  const ModelView model = storage.view();
   PosedMesh mesh(model);
   mesh.set_time(at_key(0));
   std::vector<Aabb> boxes(model.triangle_count());
   triangle_boxes(mesh, boxes);
   for (const Aabb& box : boxes) {
     EXPECT_FALSE(box.empty());
-    EXPECT_TRUE(std::isfinite(box.diagonal()));
+    EXPECT_TRUE(std::isfinite(diagonal(box)));
   }
 }
 
 TEST(PosedMesh, InterpolatedWorldBoxHoldsTheInterpolatedVertices) {
   const ModelStorage storage = two_keys(300);
-  const Model model = storage.view();
+  const ModelView model = storage.view();
   PosedMesh mesh(model);
   for (const float s : {0.001f, 0.3f, 0.5f, 0.999f}) {
     mesh.set_time({0, 1, s});

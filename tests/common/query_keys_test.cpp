@@ -68,7 +68,7 @@ TEST_P(EnterBoxes, FindsEveryBoxThatTheRayEntersAndHardlyAnyOther) {
   const ResetIsa reset;
   const std::size_t count = GetParam();
   const ModelStorage storage = moving_clusters(count, 7 + count);
-  const Model model = storage.view();
+  const ModelView model = storage.view();
   const BoxColumns columns(model);
   const Aabb bounds{{0, 0, 0}, {kSide + 3, kSide + 3, kSide + 3}};
   test::Random random(3);

@@ -72,7 +72,7 @@ double total(const std::vector<double>& shares) {
 TEST(Samples, CoverTheShareOfAPixelThatASquaresEdgeLeaves) {
   constexpr float kAngle = 0.3f;
   const ModelStorage storage = square(kAngle, {});
-  const Model model = storage.view();
+  const ModelView model = storage.view();
   Renderer renderer(model, "brute-force");
   FrameRequest request = request_of(at_key(0));
   constexpr double kUnit = kSide / 6.0;  // pixels
@@ -102,7 +102,7 @@ TEST(Samples, CoverTheShareOfAPixelThatASquaresEdgeLeaves) {
 
 TEST(Samples, OneIsThePixelsCentreAndCountsAreOfAll) {
   const ModelStorage storage = square(0, {});
-  const Model model = storage.view();
+  const ModelView model = storage.view();
   Renderer renderer(model, "brute-force");
   FrameRequest request = request_of(at_key(0));
   renderer.render(request);
@@ -119,7 +119,7 @@ TEST(Samples, OneIsThePixelsCentreAndCountsAreOfAll) {
 
 TEST(Samples, ImpossibleNumbersAreRefused) {
   const ModelStorage storage = square(0, {});
-  const Model model = storage.view();
+  const ModelView model = storage.view();
   Renderer renderer(model, "brute-force");
   FrameRequest request = request_of(at_key(0));
   request.samples = 0;
@@ -137,7 +137,7 @@ TEST(Samples, ImpossibleNumbersAreRefused) {
 
 TEST(Shutter, SpreadsItsMomentsEvenlyAroundTheFramesOwn) {
   const ModelStorage storage = square(0, {1, 0, 0});
-  const Model model = storage.view();
+  const ModelView model = storage.view();
   const std::vector<KeyInterval> moments = shutter_moments(model, 0, 0.5, 0.4, 32);
   ASSERT_EQ(moments.size(), 32u);
   EXPECT_EQ(moments[0], locate_time(model, 0, 0.5));
@@ -153,7 +153,7 @@ TEST(Shutter, SpreadsItsMomentsEvenlyAroundTheFramesOwn) {
 
 TEST(Shutter, BlursAMovingSquareAlongItsPathByTheTimeItIsThere) {
   const ModelStorage storage = square(0, {2, 0, 0});
-  const Model model = storage.view();
+  const ModelView model = storage.view();
   Renderer renderer(model, "brute-force");
   FrameRequest request = request_of(locate_time(model, 0, 0.5));
   request.samples = 64;
@@ -190,7 +190,7 @@ TEST(HeatScale, EndsAtTheNextRoundNumber) {
 
 TEST(HeatMap, ShowsTilesWhoseCountsAddUpToTheFramesCounters) {
   const ModelStorage storage = square(0.3f, {});
-  const Model model = storage.view();
+  const ModelView model = storage.view();
   Renderer renderer(model, "refit-bvh");
   FrameRequest request = request_of(at_key(0));
   request.counting = Counting::kOn;
@@ -217,7 +217,7 @@ TEST(Residuals, AreTheMotionThatTheMapDoesNotExplainRelativeToTheRestDiagonal) {
   // The square moves by (0.3, 0, 0); the map follows two thirds of the way.
   ModelStorage storage = square(0, {0.3f, 0, 0});
   storage.local_from_world[1].m[0][3] = -0.2f;
-  const Model model = storage.view();
+  const ModelView model = storage.view();
   PosedMesh mesh(model);
   std::vector<float> residuals(2);
   mesh.set_time(at_key(0));

@@ -98,7 +98,7 @@ ModelStorage colored_square() {
 
 TEST(Shader, ShowsBaseColoursUnlitAsTheyAreAndLitFacingTheEyeInFull) {
   const ModelStorage storage = colored_square();
-  const Model model = storage.view();
+  const ModelView model = storage.view();
   Renderer renderer(model, "brute-force");
   const Camera camera{.eye = {0, 0, 100}, .target = {0, 0, 0}, .vertical_fov_deg = 1.5f};
   renderer.render({.at = at_key(0), .camera = camera, .width = 64, .height = 64});
@@ -111,7 +111,7 @@ TEST(Shader, ShowsBaseColoursUnlitAsTheyAreAndLitFacingTheEyeInFull) {
 
 TEST(Shader, SeesBothSidesAlike) {
   const ModelStorage storage = colored_square();
-  const Model model = storage.view();
+  const ModelView model = storage.view();
   Renderer renderer(model, "brute-force");
   const Camera back{.eye = {0, 0, -100}, .target = {0, 0, 0}, .vertical_fov_deg = 1.5f};
   renderer.render({.at = at_key(0), .camera = back, .width = 64, .height = 64});

@@ -37,7 +37,7 @@ class SpinningTechnique final : public Technique {
 };
 
 template <int kId>
-std::unique_ptr<Technique> make_spinning(const Model&) {
+std::unique_ptr<Technique> make_spinning(const ModelView&) {
   return std::make_unique<SpinningTechnique<kId>>();
 }
 
@@ -86,7 +86,7 @@ class TechniqueChooserTest : public testing::Test {
   }
 
   ModelStorage storage_;
-  Model model_;
+  ModelView model_;
   TileScratch scratch_;
   TraceCounters counters_;
   std::uint32_t shown_ = kNoHit;

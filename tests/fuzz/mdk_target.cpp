@@ -19,7 +19,7 @@ std::size_t choice(std::span<const unsigned char> bytes, std::size_t count) {
   return std::accumulate(bytes.begin(), bytes.end(), std::size_t{0}) % count;
 }
 
-void render(const Model& model, std::size_t turn) {
+void render(const ModelView& model, std::size_t turn) {
   const std::span<const TechniqueInfo> techniques = technique_table();
   const std::span<const ShadingInfo> shadings = shading_table();
   const Clip& clip = model.clips.front();

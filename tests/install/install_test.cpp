@@ -10,6 +10,7 @@ namespace mdk::test {
 namespace {
 
 using testing::HasSubstr;
+using testing::Not;
 
 class Installed : public testing::Test {
  protected:
@@ -43,24 +44,69 @@ TEST_F(Installed, ProgramsRunWhereverThePrefixIs) {
   EXPECT_EQ(shell("grep -rl 'first place' 'second place/lib' 'second place/share'").out, "");
 }
 
+TEST_F(Installed, HeadersAreThePublicOnesAlone) {
+  const Outcome installed = shell("cd 'second place/include' && find . -type f | sort");
+  EXPECT_EQ(installed.out,
+            shell("cd " MDK_SOURCE_DIR "/common/include && find . -type f | sort").out);
+  EXPECT_THAT(installed.out, HasSubstr("./mdk/ray_query.h\n"));
+}
+
+TEST_F(Installed, PackageAsksForNothingThatTracingDoesNotLink) {
+  const std::string package = "'second place'/lib*/cmake/mdk 'second place'/lib*/*/cmake/mdk";
+  EXPECT_THAT(shell("grep -rh TBB " + package).out, HasSubstr("TBB"));
+  EXPECT_EQ(shell("grep -riE 'embree|png|ffp-contract|cxx_std_20|defaults' " + package).out, "");
+}
+
+/// Configures and builds a project that uses the installed library, as C++17, where neither Embree
+/// nor libpng can be found.
+Outcome build_client(const BatchFolder& folder, const std::string& source,
+                     const std::string& build) {
+  return folder.shell(MDK_CMAKE " -S " + source + " -B " + build +
+                      " -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_COMPILER=" MDK_CXX
+                      " -DCMAKE_CXX_FLAGS='-Wall -Wextra -Wconversion -Werror'"
+                      " -DCMAKE_EXPORT_COMPILE_COMMANDS=ON -DCMAKE_DISABLE_FIND_PACKAGE_PNG=ON"
+                      " -DCMAKE_DISABLE_FIND_PACKAGE_embree=ON"
+                      " -DCMAKE_PREFIX_PATH=\"$PWD/second place\" && " MDK_CMAKE " --build " +
+                      build);
+}
+
 TEST_F(Installed, AnotherProjectFindsTheLibraryAndTracesRays) {
   if (std::string(MDK_SANITIZE) != "") GTEST_SKIP() << "the example is built without sanitizers";
   ASSERT_EQ(shell("mdprep bake a.gltf -o swept.mdk -q").status, 0);
-  const Outcome build = shell(MDK_CMAKE " -S " MDK_SOURCE_DIR
-                                        "/examples/ray_sweep -B example -DCMAKE_BUILD_TYPE=Release "
-                                        "-DCMAKE_CXX_COMPILER=" MDK_CXX
-                                        " -DCMAKE_PREFIX_PATH=\"$PWD/second place\" && " MDK_CMAKE
-                                        " --build example");
+  const Outcome build = build_client(*folder_, MDK_SOURCE_DIR "/examples/ray_sweep", "example");
   ASSERT_EQ(build.status, 0) << build.out << build.err;
+  const std::string commands = folder_->read("example/compile_commands.json");
+  EXPECT_THAT(commands, HasSubstr("++17"));
+  EXPECT_THAT(commands, Not(HasSubstr("++20")));
+  EXPECT_THAT(commands, Not(HasSubstr("-ffp-contract")));
   const Outcome run = shell("example/ray_sweep swept.mdk");
   ASSERT_EQ(run.status, 0) << run.err;
-  int met = 0, all = 0;
-  std::istringstream(run.out) >> met;
+  int hits = 0, all = 0;
+  std::istringstream(run.out) >> hits;
   std::istringstream(run.out.substr(run.out.find("of ") + 3)) >> all;
   EXPECT_EQ(all, 3600);
-  EXPECT_GT(met, 100) << "two squares, seen from the side";
-  EXPECT_LT(met, all);
+  EXPECT_GT(hits, 100) << "two squares, seen from the side";
+  EXPECT_LT(hits, all);
   EXPECT_EQ(shell("example/ray_sweep none.mdk").status, 4);
+}
+
+TEST_F(Installed, TheProgramInTheDocumentationHitsTheHand) {
+  if (std::string(MDK_SANITIZE) != "") GTEST_SKIP() << "the example is built without sanitizers";
+  ASSERT_EQ(shell("mdprep bake " MDK_SOURCE_DIR "/assets/hand.glb -o hand.mdk -q && mkdir doc && "
+                  "cp " MDK_SOURCE_DIR "/examples/ray_sweep/CMakeLists.txt doc && "
+                  "sed -n '/^```cpp/,/^```/p' 'second place/share/doc/libmdk-dev/ray-queries.md' | "
+                  "grep -v '^```' > doc/main.cpp")
+                .status,
+            0);
+  const Outcome build = build_client(*folder_, "doc", "doc/build");
+  ASSERT_EQ(build.status, 0) << build.out << build.err;
+  const Outcome run = shell("doc/build/ray_sweep");
+  ASSERT_EQ(run.status, 0) << run.err;
+  int hits = 0;
+  std::istringstream(run.out) >> hits;
+  EXPECT_GT(hits, 100) << run.out;
+  EXPECT_LT(hits, 10'000) << run.out;
+  EXPECT_THAT(run.out, HasSubstr("m away"));
 }
 
 TEST_F(Installed, EveryCommandHasAPageThatManTakesAndThatNamesItsOptions) {

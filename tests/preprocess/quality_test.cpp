@@ -32,7 +32,7 @@ double median_area_ratio(const ModelStorage& model, std::span<const Aabb> boxes)
     for (std::size_t c = 0; c < clusters; ++c)
       ratios[k] +=
           sums[c].area(world_area_weights(to_double(model.local_from_world[k * clusters + c])));
-    ratios[k] /= box.surface_area();
+    ratios[k] /= surface_area(box);
   }
   std::nth_element(ratios.begin(), ratios.begin() + static_cast<std::ptrdiff_t>(keys / 2),
                    ratios.end());

@@ -65,7 +65,7 @@ TEST(HandPose, PastALimitThePictureIsTracedByBoxesOfThisPoseAlone) {
 
 TEST(HandPose, APickIsTheTriangleThatThePosedPictureShows) {
   const ModelStorage storage = sample_skeleton_model();
-  const Model model = storage.view();
+  const ModelView model = storage.view();
   HandPose hand = rest_pose_of(model);
   turn_joint(hand, model.skeleton, {0.3, 0.2, 0.1});
   FrameRequest request;

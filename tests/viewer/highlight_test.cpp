@@ -58,7 +58,7 @@ TEST(Highlight, RefusesTrianglesOfAnotherPicture) {
 
 TEST(Highlight, TrianglesOfAPictureAreThoseOfItsHits) {
   const ModelStorage bar = waving_bar();
-  const Model model = bar.view();
+  const ModelView model = bar.view();
   Renderer renderer(model, "fuzzy-bvh");
   FrameRequest request;
   request.camera = fit_camera(model.bounds, 1);

@@ -16,7 +16,7 @@ namespace {
 constexpr std::size_t kMoments = 40;
 
 /// The work of tracing each moment, in its own place, whatever the order they are visited in.
-std::vector<TraceCounters> work_in_order(const Model& model, std::string_view technique,
+std::vector<TraceCounters> work_in_order(const ModelView& model, std::string_view technique,
                                          const std::vector<std::size_t>& order) {
   Renderer renderer(model, technique);
   FrameRequest request;
@@ -34,7 +34,7 @@ std::vector<TraceCounters> work_in_order(const Model& model, std::string_view te
 
 TEST(RandomSeeks, DoTheSameWorkAsPlaying) {
   const ModelStorage bar = waving_bar();
-  const Model model = bar.view();
+  const ModelView model = bar.view();
   std::vector<std::size_t> playing(kMoments);
   std::iota(playing.begin(), playing.end(), std::size_t{0});
   std::vector<std::size_t> jumping = playing;

@@ -90,7 +90,7 @@ TEST_F(Exporting, MdprepsSentenceComesThroughWhereItFails) {
 }
 
 TEST_F(Exporting, FindsTheKeysOfARange) {
-  const Model& model = file_->model();  // "wave": 11 keys, 0.1 s apart; then "nod": 5
+  const ModelView& model = file_->model();  // "wave": 11 keys, 0.1 s apart; then "nod": 5
   const auto keys = [&](std::uint32_t clip, double begin, double end) {
     const KeyRange range = keys_within(model, clip, begin, end);
     return std::pair{range.first, range.last};

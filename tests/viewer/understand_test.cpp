@@ -24,7 +24,7 @@ class Bar : public testing::Test {
   }
 
   ModelStorage storage_ = test::waving_bar();
-  Model model_ = storage_.view();
+  ModelView model_ = storage_.view();
   FrameRequest request_;
 };
 

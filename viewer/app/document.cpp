@@ -45,7 +45,7 @@ void Document::enter(const LoadedScene& scene) {
   state_.file_name = fs::path(state_.path).filename().string();
   state_.frames = {};
   state_.error.clear();
-  const Model& model = state_.file->model();
+  const ModelView& model = state_.file->model();
   state_.clusters = ClusterView(model);
   state_.picked.reset();
   state_.residuals = {};

@@ -70,7 +70,7 @@ Json picked_json(const ViewState& state) {
   if (!state.picked) return nullptr;
   const PickedTriangle& picked = *state.picked;
   const Moment moment = state.frames.last ? state.frames.last->moment : Moment{};
-  const Model& model = *state.model();
+  const ModelView& model = *state.model();
   const Aabb box = model.fuzzy_box(segment_of(model, moment), picked.cluster, picked.triangle);
   return {{"triangle", picked.triangle},
           {"source_triangle", model.source_triangles[picked.triangle]},

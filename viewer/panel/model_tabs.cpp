@@ -183,7 +183,7 @@ void draw_curve(const Theme& theme, const ResidualCurve& curve, double seconds, 
 }
 
 void draw_pick_facts(const ViewState& state, const PickedTriangle& picked, double residual) {
-  const Model& model = *state.model();
+  const ModelView& model = *state.model();
   const std::uint32_t segment =
       segment_of(model, state.frames.last ? state.frames.last->moment : Moment{});
   const Aabb box = model.fuzzy_box(segment, picked.cluster, picked.triangle);
@@ -220,7 +220,7 @@ void draw_pick_choices(const Theme& theme, ViewState& state, const PickedTriangl
 
 void draw_file_facts(const Theme& theme, const ViewState& state) {
   heading(theme, "FILE");
-  const Model* model = state.model();
+  const ModelView* model = state.model();
   if (!model) {
     ImGui::TextDisabled("Drop an animation on the window.");
     return;

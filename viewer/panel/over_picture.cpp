@@ -192,7 +192,7 @@ class LineDrawer {
 
 /// The moment's bases and boxes, and how to draw in them.
 struct Scene {
-  const Model& model;
+  const ModelView& model;
   const ClusterPlaces places;
   std::span<const FuzzyTree> trees;
 
@@ -286,7 +286,7 @@ void draw_picture_lines(const Rect& picture, const Theme& theme, const ViewState
   const bool clusters =
       o.world_boxes || o.local_boxes || o.tree_cells || state.clusters.hovered.has_value();
   if (!clusters && !state.picked) return;
-  const Model& model = *state.model();
+  const ModelView& model = *state.model();
   const FrameReport& frame = *state.frames.last;
   const Scene scene{model, cluster_places(model, frame.moment),
                     model.segment_trees(segment_of(model, frame.moment))};

@@ -233,7 +233,7 @@ void draw_turn(const SkeletonView& skeleton, HandPose& hand, UiResult& result) {
                    kDegree);
 }
 
-void draw_weights(const Model& model, HandPose& hand, UiResult& result) {
+void draw_weights(const ModelView& model, HandPose& hand, UiResult& result) {
   const std::vector<WeightRange> ranges = weight_ranges(model);
   for (std::size_t t = 0; t < ranges.size(); ++t) {
     const std::string name = "morph " + std::to_string(t);
@@ -277,7 +277,7 @@ void draw_overlays(const Rect& picture, const Theme& theme, ViewState& state, Ui
 }
 
 void draw_pose_panel(const Rect& picture, const Theme& theme, ViewState& state, UiResult& result) {
-  const Model* model = state.model();
+  const ModelView* model = state.model();
   if (!model || model->skeleton.joints.empty()) return;
   const float margin = 14 * theme.scale;
   ImGui::SetNextWindowPos({picture.x + margin, picture.y + margin}, ImGuiCond_FirstUseEver);

@@ -56,7 +56,7 @@ void draw_keys(const Rect& place, const TimeScale& scale, const Theme& theme,
 // Stretches of the clip with boxes of their own.
 void draw_segments(const Rect& place, const TimeScale& scale, const Theme& theme,
                    const ViewState& state, UiResult& result) {
-  const Model& model = *state.model();
+  const ModelView& model = *state.model();
   const Clip& clip = model.clips[state.playback.clip()];
   ImDrawList& draw = *ImGui::GetWindowDrawList();
   std::size_t number = 0;

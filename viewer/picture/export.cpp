@@ -122,7 +122,7 @@ std::string render_command(const RenderJob& job, const std::string& path, const 
   return line;
 }
 
-KeyRange keys_within(const Model& model, std::uint32_t clip, double begin, double end) {
+KeyRange keys_within(const ModelView& model, std::uint32_t clip, double begin, double end) {
   const Clip& keys = model.clips[clip];
   const auto times = model.key_times.subspan(keys.first_key, keys.key_count);
   constexpr double kSlack = 1e-9;

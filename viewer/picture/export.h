@@ -38,7 +38,7 @@ struct KeyRange {
 };
 
 /// The keys of a clip within [begin, end], in seconds from its start; the nearest one at least.
-KeyRange keys_within(const Model& model, std::uint32_t clip, double begin, double end);
+KeyRange keys_within(const ModelView& model, std::uint32_t clip, double begin, double end);
 
 struct ExportOrder {
   RenderJob picture;  ///< how each is made; its moment does not count

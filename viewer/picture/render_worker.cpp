@@ -124,7 +124,7 @@ void RenderWorker::drop_renderers() {
 TracedFrame RenderWorker::trace(std::unique_ptr<Renderer>& renderer, const RenderJob& job,
                                 std::size_t technique) {
   const std::string_view id = technique_table()[technique].id;
-  const Model& model = open_part_ ? open_part_->model() : open_file_->model();
+  const ModelView& model = open_part_ ? open_part_->model() : open_file_->model();
   if (!renderer) renderer = std::make_unique<Renderer>(model, id);
   if (renderer->technique_id() != id) renderer->set_technique(id);
   FrameRequest request = job.request;

@@ -25,7 +25,7 @@ RenderJob view_of(RenderJob job) {
 }  // namespace
 
 RenderJob picture_job(const ViewState& state, std::uint32_t width, std::uint32_t height) {
-  const Model& model = *state.model();
+  const ModelView& model = *state.model();
   RenderJob job;
   job.file = state.file;
   job.technique = state.settings.technique;

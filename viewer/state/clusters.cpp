@@ -15,7 +15,7 @@ constexpr std::uint64_t kMaxVertices = 8'000'000;
 constexpr std::uint32_t kMaxKeys = 24;
 
 // Sums of squares, then the root of the mean.
-void take_residuals(const Model& model, std::vector<ClusterFacts>& facts) {
+void take_residuals(const ModelView& model, std::vector<ClusterFacts>& facts) {
   const std::uint64_t affordable = kMaxVertices / std::max(1u, model.vertex_count);
   const auto keys = static_cast<std::uint32_t>(
       std::clamp<std::uint64_t>(affordable, 1, std::min(kMaxKeys, model.key_count())));
@@ -36,14 +36,14 @@ void take_residuals(const Model& model, std::vector<ClusterFacts>& facts) {
     f.residual = f.triangles > 0 ? std::sqrt(f.residual / (double{1} * f.triangles * keys)) : 0;
 }
 
-double mean_world_area(const Model& model, std::uint32_t cluster) {
+double mean_world_area(const ModelView& model, std::uint32_t cluster) {
   double sum = 0;
   for (std::uint32_t key = 0; key < model.key_count(); ++key)
-    sum += static_cast<double>(model.world_box(key, cluster).surface_area());
+    sum += static_cast<double>(surface_area(model.world_box(key, cluster)));
   return sum / model.key_count();
 }
 
-double mean_tree_cost(const Model& model, std::uint32_t cluster) {
+double mean_tree_cost(const ModelView& model, std::uint32_t cluster) {
   const KdBuildConfig config;
   double sum = 0, keys = 0;
   for (std::uint32_t s = 0; s < model.segment_count(); ++s) {
@@ -56,7 +56,7 @@ double mean_tree_cost(const Model& model, std::uint32_t cluster) {
 
 }  // namespace
 
-std::vector<ClusterFacts> cluster_facts(const Model& model) {
+std::vector<ClusterFacts> cluster_facts(const ModelView& model) {
   std::vector<ClusterFacts> facts(model.cluster_count());
   double total = 0;
   for (std::uint32_t c = 0; c < facts.size(); ++c) {
@@ -69,7 +69,7 @@ std::vector<ClusterFacts> cluster_facts(const Model& model) {
   return facts;
 }
 
-PartialModel::PartialModel(const Model& whole, std::span<const std::uint8_t> left_out)
+PartialModel::PartialModel(const ModelView& whole, std::span<const std::uint8_t> left_out)
     : model_(whole),
       triangles_(whole.triangles.begin(), whole.triangles.end()),
       world_boxes_(whole.cluster_world_boxes.begin(), whole.cluster_world_boxes.end()) {

@@ -24,7 +24,7 @@ struct ClusterFacts {
 /// it and of its fuzzy kd-trees (SAH, mean over keys): docs/method.md, cost. Residuals are taken at
 /// keys spread evenly over the file, fewer of them where it has many vertices. Cost: O(keys *
 /// clusters + tree nodes), and at most some ten million vertices.
-std::vector<ClusterFacts> cluster_facts(const Model& model);
+std::vector<ClusterFacts> cluster_facts(const ModelView& model);
 
 /// A model of which some clusters are left out. Triangles and clusters keep their
 /// numbers: a triangle that is left out shrinks to its first corner, which no ray hits and every
@@ -34,14 +34,14 @@ class PartialModel {
  public:
   /// `left_out`: one per cluster, not 0 where it is. The memory of `whole` must outlive this. Cost:
   /// O(triangles + keys * clusters).
-  PartialModel(const Model& whole, std::span<const std::uint8_t> left_out);
+  PartialModel(const ModelView& whole, std::span<const std::uint8_t> left_out);
   PartialModel(const PartialModel&) = delete;
   PartialModel& operator=(const PartialModel&) = delete;
 
-  const Model& model() const { return model_; }
+  const ModelView& model() const { return model_; }
 
  private:
-  Model model_;
+  ModelView model_;
   std::vector<Triangle> triangles_;
   std::vector<QuantizedBox> world_boxes_;
 };
@@ -51,7 +51,8 @@ class ClusterView {
  public:
   ClusterView() = default;
   /// Of a model that outlives this; all are shown.
-  explicit ClusterView(const Model& model) : model_(&model), hidden_(model.cluster_count(), 0) {}
+  explicit ClusterView(const ModelView& model)
+      : model_(&model), hidden_(model.cluster_count(), 0) {}
 
   /// Whether the cluster itself was hidden, whatever solo says.
   bool hidden(std::uint32_t cluster) const { return hidden_[cluster] != 0; }
@@ -76,7 +77,7 @@ class ClusterView {
  private:
   void update_part();
 
-  const Model* model_ = nullptr;
+  const ModelView* model_ = nullptr;
   std::vector<std::uint8_t> hidden_;
   std::optional<std::uint32_t> solo_;
   std::shared_ptr<const PartialModel> part_;

@@ -4,12 +4,12 @@
 #include <array>
 #include <cmath>
 
-#include "common/trace/ray_query.h"
+#include "common/trace/brute_force.h"
 
 namespace mdk {
 namespace {
 
-std::array<Vec3d, 3> local_corners(const Model& model, std::uint32_t key, std::uint32_t cluster,
+std::array<Vec3d, 3> local_corners(const ModelView& model, std::uint32_t key, std::uint32_t cluster,
                                    const Triangle& triangle) {
   const Affine3d local_from_world = to_double(model.key_maps(key)[cluster]);
   std::array<Vec3d, 3> corners;
@@ -23,7 +23,7 @@ std::array<Vec3d, 3> local_corners(const Model& model, std::uint32_t key, std::u
 
 }  // namespace
 
-std::uint32_t cluster_of_triangle(const Model& model, std::uint32_t triangle) {
+std::uint32_t cluster_of_triangle(const ModelView& model, std::uint32_t triangle) {
   const auto after = std::upper_bound(
       model.clusters.begin(), model.clusters.end(), triangle,
       [](std::uint32_t t, const Cluster& cluster) { return t < cluster.first_triangle; });
@@ -31,18 +31,18 @@ std::uint32_t cluster_of_triangle(const Model& model, std::uint32_t triangle) {
   return static_cast<std::uint32_t>(after - model.clusters.begin()) - 1;
 }
 
-std::optional<PickedTriangle> pick_triangle(const Model& model, const Moment& moment,
+std::optional<PickedTriangle> pick_triangle(const ModelView& model, const Moment& moment,
                                             const PictureRays& picture, std::uint32_t x,
                                             std::uint32_t y) {
   const PinholeRays rays = make_pinhole_rays(picture.camera, picture.width, picture.height);
   const QueryRay ray{rays.origin,
                      rays.direction(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f)};
   const QueryHit hit = brute_force_closest_hit(mesh_at(model, moment), ray);
-  if (hit.triangle == kNoHit) return {};
+  if (!hit.is_hit()) return {};
   return PickedTriangle{hit.triangle, cluster_of_triangle(model, hit.triangle), hit.t};
 }
 
-ResidualCurve residual_curve(const Model& model, std::uint32_t clip, std::uint32_t triangle) {
+ResidualCurve residual_curve(const ModelView& model, std::uint32_t clip, std::uint32_t triangle) {
   const std::uint32_t cluster = cluster_of_triangle(model, triangle);
   const Triangle& corners = model.triangles[triangle];
   const auto at_rest = local_corners(model, model.rest_key, cluster, corners);
@@ -60,7 +60,7 @@ ResidualCurve residual_curve(const Model& model, std::uint32_t clip, std::uint32
   return curve;
 }
 
-const ResidualCurve& ResidualCurveCache::curve(const Model& model, std::uint32_t clip,
+const ResidualCurve& ResidualCurveCache::curve(const ModelView& model, std::uint32_t clip,
                                                std::uint32_t triangle) {
   if (curve_.seconds.empty() || clip != clip_ || triangle != triangle_)
     curve_ = residual_curve(model, clip, triangle);

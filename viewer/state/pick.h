@@ -25,12 +25,12 @@ struct PictureRays {
 
 /// What pixel (x, y) of the picture shows: the closest hit of one ray through its centre, found
 /// without any structure. Empty for the background. Cost: O(vertices + triangles).
-std::optional<PickedTriangle> pick_triangle(const Model& model, const Moment& moment,
+std::optional<PickedTriangle> pick_triangle(const ModelView& model, const Moment& moment,
                                             const PictureRays& picture, std::uint32_t x,
                                             std::uint32_t y);
 
 /// Cost: O(log clusters).
-std::uint32_t cluster_of_triangle(const Model& model, std::uint32_t triangle);
+std::uint32_t cluster_of_triangle(const ModelView& model, std::uint32_t triangle);
 
 /// One per key of a clip.
 struct ResidualCurve {
@@ -41,12 +41,12 @@ struct ResidualCurve {
 /// The largest residual of the triangle's corners at each key of a clip: the distance, in the
 /// cluster's basis, of a corner from where it is in the rest pose (GFW06 §3.1; as
 /// triangle_residuals()). Cost: O(keys), decoding three vertices for each.
-ResidualCurve residual_curve(const Model& model, std::uint32_t clip, std::uint32_t triangle);
+ResidualCurve residual_curve(const ModelView& model, std::uint32_t clip, std::uint32_t triangle);
 
 /// The last curve that was asked for, so that drawing it again costs nothing. For one model.
 class ResidualCurveCache {
  public:
-  const ResidualCurve& curve(const Model& model, std::uint32_t clip, std::uint32_t triangle);
+  const ResidualCurve& curve(const ModelView& model, std::uint32_t clip, std::uint32_t triangle);
 
  private:
   std::uint32_t clip_ = 0, triangle_ = 0;

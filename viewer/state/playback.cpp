@@ -6,7 +6,7 @@
 
 namespace mdk {
 
-std::vector<ClipTimes> clip_times(const Model& model) {
+std::vector<ClipTimes> clip_times(const ModelView& model) {
   std::vector<ClipTimes> clips;
   for (const Clip& clip : model.clips) {
     const auto times = model.key_times.subspan(clip.first_key, clip.key_count);

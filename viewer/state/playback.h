@@ -37,7 +37,7 @@ struct TimeRange {
   bool operator==(const TimeRange&) const = default;
 };
 
-std::vector<ClipTimes> clip_times(const Model& model);
+std::vector<ClipTimes> clip_times(const ModelView& model);
 
 /// The time is always within the clip. Without clips every call is harmless and the time stays 0.
 class Playback {

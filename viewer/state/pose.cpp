@@ -6,7 +6,7 @@
 
 namespace mdk {
 
-PosedMesh mesh_at(const Model& model, const Moment& moment) {
+PosedMesh mesh_at(const ModelView& model, const Moment& moment) {
   PosedMesh mesh(model);
   if (moment.pose)
     mesh.set_pose(*moment.pose);
@@ -15,7 +15,7 @@ PosedMesh mesh_at(const Model& model, const Moment& moment) {
   return mesh;
 }
 
-ClusterPlaces cluster_places(const Model& model, const Moment& moment) {
+ClusterPlaces cluster_places(const ModelView& model, const Moment& moment) {
   ClusterPlaces places;
   const std::uint32_t clusters = model.cluster_count();
   if (moment.pose) {
@@ -35,7 +35,8 @@ ClusterPlaces cluster_places(const Model& model, const Moment& moment) {
   return places;
 }
 
-std::array<Vec3d, 3> corners_at(const Model& model, const Moment& moment, std::uint32_t triangle) {
+std::array<Vec3d, 3> corners_at(const ModelView& model, const Moment& moment,
+                                std::uint32_t triangle) {
   const Triangle& corners = model.triangles[triangle];
   std::array<Vec3d, 3> places;
   if (moment.pose) {
@@ -54,11 +55,11 @@ std::array<Vec3d, 3> corners_at(const Model& model, const Moment& moment, std::u
   return places;
 }
 
-std::uint32_t segment_of(const Model& model, const Moment& moment) {
+std::uint32_t segment_of(const ModelView& model, const Moment& moment) {
   return moment.pose ? 0 : segment_of(model, moment.at);
 }
 
-HandPose rest_pose_of(const Model& model) {
+HandPose rest_pose_of(const ModelView& model) {
   HandPose hand;
   const auto& joints = model.skeleton.joints;
   if (joints.empty()) return hand;
@@ -70,7 +71,7 @@ HandPose rest_pose_of(const Model& model) {
   return hand;
 }
 
-std::vector<WeightRange> weight_ranges(const Model& model) {
+std::vector<WeightRange> weight_ranges(const ModelView& model) {
   const auto& weights = model.poses.rig.target_weights;
   const std::size_t targets = weights.size() / model.key_count();
   std::vector<WeightRange> ranges;

@@ -22,7 +22,7 @@ struct Moment {
 };
 
 /// The mesh as it is at the moment. Cost: as PosedMesh.
-PosedMesh mesh_at(const Model& model, const Moment& moment);
+PosedMesh mesh_at(const ModelView& model, const Moment& moment);
 
 struct ClusterPlaces {
   std::vector<Affine3d> local_from_world;  ///< K
@@ -30,14 +30,15 @@ struct ClusterPlaces {
 };
 
 /// Cost: O(clusters); O(vertices + triangles) for a pose by hand.
-ClusterPlaces cluster_places(const Model& model, const Moment& moment);
+ClusterPlaces cluster_places(const ModelView& model, const Moment& moment);
 
 /// The corners of a triangle, as mesh_at() has them. Cost: three vertices; O(vertices + triangles)
 /// for a pose by hand.
-std::array<Vec3d, 3> corners_at(const Model& model, const Moment& moment, std::uint32_t triangle);
+std::array<Vec3d, 3> corners_at(const ModelView& model, const Moment& moment,
+                                std::uint32_t triangle);
 
 /// The time segment whose boxes hold.
-std::uint32_t segment_of(const Model& model, const Moment& moment);
+std::uint32_t segment_of(const ModelView& model, const Moment& moment);
 
 /// A skeleton posed by hand instead of by a clip, and whether the boxes still hold there.
 struct HandPose {
@@ -49,13 +50,13 @@ struct HandPose {
 
 /// At rest, with the morph weights of the first key, the first joint chosen that can turn.
 /// Inactive.
-HandPose rest_pose_of(const Model& model);
+HandPose rest_pose_of(const ModelView& model);
 
 /// Range of each morph weight over the clips, which the boxes hold for.
 struct WeightRange {
   float min = 0, max = 0;
 };
-std::vector<WeightRange> weight_ranges(const Model& model);
+std::vector<WeightRange> weight_ranges(const ModelView& model);
 
 /// Turns the chosen joint by the rotation vector `turn` (radians, in its own axes), shortened to
 /// its limit unless it may go beyond.

@@ -55,8 +55,10 @@ struct ViewState {
   /// Whether the picture changes by itself as time passes.
   bool moves() const { return file && (playback.playing() || turntable); }
   /// The triangles that are in the picture; null: no file.
-  const Model* shown_model() const { return clusters.part() ? &clusters.part()->model() : model(); }
-  const Model* model() const { return file ? &file->model() : nullptr; }
+  const ModelView* shown_model() const {
+    return clusters.part() ? &clusters.part()->model() : model();
+  }
+  const ModelView* model() const { return file ? &file->model() : nullptr; }
 };
 
 }  // namespace mdk

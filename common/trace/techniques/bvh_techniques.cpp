@@ -14,7 +14,7 @@ constexpr int kCarefulBins = 1024;  ///< ahead of time: quality before speed
 
 class BvhTechnique : public StructureTechnique {
  public:
-  explicit BvhTechnique(const Model& model)
+  explicit BvhTechnique(const ModelView& model)
       : StructureTechnique(model), boxes_(model.triangle_count()) {}
 
   void update(const PosedMesh& mesh) final {
@@ -141,16 +141,16 @@ class HybridBvhTechnique final : public BvhTechnique {
 
 }  // namespace
 
-std::unique_ptr<Technique> make_rebuild_bvh(const Model& model) {
+std::unique_ptr<Technique> make_rebuild_bvh(const ModelView& model) {
   return std::make_unique<RebuildBvhTechnique>(model);
 }
-std::unique_ptr<Technique> make_refit_bvh(const Model& model) {
+std::unique_ptr<Technique> make_refit_bvh(const ModelView& model) {
   return std::make_unique<RefitBvhTechnique>(model);
 }
-std::unique_ptr<Technique> make_tsah_refit(const Model& model) {
+std::unique_ptr<Technique> make_tsah_refit(const ModelView& model) {
   return std::make_unique<TsahRefitTechnique>(model);
 }
-std::unique_ptr<Technique> make_hybrid_bvh(const Model& model) {
+std::unique_ptr<Technique> make_hybrid_bvh(const ModelView& model) {
   return std::make_unique<HybridBvhTechnique>(model);
 }
 

@@ -45,7 +45,7 @@ class ClusterBvhTechnique : public StructureTechnique {
 /// line and valid at all its times (Lo09 §4.3). Per frame only the clusters move.
 class FuzzyBvhTechnique final : public ClusterBvhTechnique {
  public:
-  explicit FuzzyBvhTechnique(const Model& model)
+  explicit FuzzyBvhTechnique(const ModelView& model)
       : ClusterBvhTechnique(model), segments_(model.segment_count()) {}
 
   void prebuild(const PosedMesh& mesh) override {
@@ -83,7 +83,7 @@ Aabb local_box(const Affine3d& local_from_world, const Triangle& triangle, const
 /// the topology of fuzzy-bvh, with boxes as tight as the pose allows.
 class DecompRefitTechnique final : public ClusterBvhTechnique {
  public:
-  explicit DecompRefitTechnique(const Model& model)
+  explicit DecompRefitTechnique(const ModelView& model)
       : ClusterBvhTechnique(model), boxes_(model.triangle_count()) {}
 
   void prebuild(const PosedMesh&) override {
@@ -115,10 +115,10 @@ class DecompRefitTechnique final : public ClusterBvhTechnique {
 
 }  // namespace
 
-std::unique_ptr<Technique> make_fuzzy_bvh(const Model& model) {
+std::unique_ptr<Technique> make_fuzzy_bvh(const ModelView& model) {
   return std::make_unique<FuzzyBvhTechnique>(model);
 }
-std::unique_ptr<Technique> make_decomp_refit(const Model& model) {
+std::unique_ptr<Technique> make_decomp_refit(const ModelView& model) {
   return std::make_unique<DecompRefitTechnique>(model);
 }
 

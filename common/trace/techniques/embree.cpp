@@ -221,7 +221,7 @@ class BeamPackets {
 
 class EmbreeTechnique final : public Technique {
  public:
-  EmbreeTechnique(const Model& model, EmbreeMode mode)
+  EmbreeTechnique(const ModelView& model, EmbreeMode mode)
       : model_(model), mode_(mode), device_(rtcNewDevice(device_config().c_str())) {
     require_success(device_);
     rtcSetDeviceMemoryMonitorFunction(device_, count_bytes, &bytes_);
@@ -304,7 +304,7 @@ class EmbreeTechnique final : public Technique {
     return true;
   }
 
-  const Model& model_;
+  const ModelView& model_;
   EmbreeMode mode_;
   std::atomic<ssize_t> bytes_ = 0;  // outlives the device, which reports to it until the end
   RTCDevice device_;
@@ -319,16 +319,16 @@ class EmbreeTechnique final : public Technique {
 
 }  // namespace
 
-std::unique_ptr<Technique> make_embree_refit(const Model& model) {
+std::unique_ptr<Technique> make_embree_refit(const ModelView& model) {
   return std::make_unique<EmbreeTechnique>(model, EmbreeMode::kRefit);
 }
-std::unique_ptr<Technique> make_embree_low(const Model& model) {
+std::unique_ptr<Technique> make_embree_low(const ModelView& model) {
   return std::make_unique<EmbreeTechnique>(model, EmbreeMode::kLow);
 }
-std::unique_ptr<Technique> make_embree_medium(const Model& model) {
+std::unique_ptr<Technique> make_embree_medium(const ModelView& model) {
   return std::make_unique<EmbreeTechnique>(model, EmbreeMode::kMedium);
 }
-std::unique_ptr<Technique> make_embree(const Model& model) {
+std::unique_ptr<Technique> make_embree(const ModelView& model) {
   static constexpr TechniqueCandidate kModes[] = {{"embree-refit", make_embree_refit},
                                                   {"embree-low", make_embree_low},
                                                   {"embree-medium", make_embree_medium}};

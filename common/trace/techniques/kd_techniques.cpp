@@ -79,10 +79,10 @@ class StaticKdTechnique final : public StructureTechnique {
 
 }  // namespace
 
-std::unique_ptr<Technique> make_fuzzy_kdtree(const Model& model) {
+std::unique_ptr<Technique> make_fuzzy_kdtree(const ModelView& model) {
   return std::make_unique<FuzzyKdTechnique>(model);
 }
-std::unique_ptr<Technique> make_static_kdtree(const Model& model) {
+std::unique_ptr<Technique> make_static_kdtree(const ModelView& model) {
   return std::make_unique<StaticKdTechnique>(model);
 }
 

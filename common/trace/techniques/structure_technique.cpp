@@ -62,7 +62,7 @@ std::size_t StructureTechnique::structure_bytes() const {
   return tree_bytes() + projected_blocks_.bytes() + posed_blocks_.bytes();
 }
 
-std::unique_ptr<Technique> make_brute_force(const Model& model) {
+std::unique_ptr<Technique> make_brute_force(const ModelView& model) {
   return std::make_unique<BruteForceTechnique>(model);
 }
 

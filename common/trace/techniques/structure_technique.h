@@ -11,7 +11,7 @@ namespace mdk {
 
 class StructureTechnique : public Technique {
  public:
-  explicit StructureTechnique(const Model& model) : model_(model) {}
+  explicit StructureTechnique(const ModelView& model) : model_(model) {}
   StructureTechnique(const StructureTechnique&) = delete;
   StructureTechnique& operator=(const StructureTechnique&) = delete;
 
@@ -30,7 +30,7 @@ class StructureTechnique : public Technique {
   /// Memory of the structure, in bytes.
   virtual std::size_t tree_bytes() const = 0;
 
-  const Model& model() const { return model_; }
+  const ModelView& model() const { return model_; }
 
   /// Rays find the triangles of `mesh`. Those of structures with clusters need not be posed yet.
   void show(const PosedMesh& mesh);
@@ -60,7 +60,7 @@ class StructureTechnique : public Technique {
   template <class Visit>
   void for_each_level(const Visit& visit);
 
-  const Model& model_;
+  const ModelView& model_;
   TraceScene scene_;
   std::vector<Aabb> world_boxes_;  ///< by cluster
   ProjectionCache projected_blocks_;
@@ -68,18 +68,18 @@ class StructureTechnique : public Technique {
 };
 
 // One maker per technique; the table is their only caller.
-std::unique_ptr<Technique> make_brute_force(const Model& model);
-std::unique_ptr<Technique> make_decomp_refit(const Model& model);
-std::unique_ptr<Technique> make_embree(const Model& model);         ///< only with MDK_HAVE_EMBREE
-std::unique_ptr<Technique> make_embree_low(const Model& model);     ///< "
-std::unique_ptr<Technique> make_embree_medium(const Model& model);  ///< "
-std::unique_ptr<Technique> make_embree_refit(const Model& model);   ///< "
-std::unique_ptr<Technique> make_fuzzy_bvh(const Model& model);
-std::unique_ptr<Technique> make_fuzzy_kdtree(const Model& model);
-std::unique_ptr<Technique> make_hybrid_bvh(const Model& model);
-std::unique_ptr<Technique> make_rebuild_bvh(const Model& model);
-std::unique_ptr<Technique> make_refit_bvh(const Model& model);
-std::unique_ptr<Technique> make_static_kdtree(const Model& model);
-std::unique_ptr<Technique> make_tsah_refit(const Model& model);
+std::unique_ptr<Technique> make_brute_force(const ModelView& model);
+std::unique_ptr<Technique> make_decomp_refit(const ModelView& model);
+std::unique_ptr<Technique> make_embree(const ModelView& model);      ///< only with MDK_HAVE_EMBREE
+std::unique_ptr<Technique> make_embree_low(const ModelView& model);  ///< "
+std::unique_ptr<Technique> make_embree_medium(const ModelView& model);  ///< "
+std::unique_ptr<Technique> make_embree_refit(const ModelView& model);   ///< "
+std::unique_ptr<Technique> make_fuzzy_bvh(const ModelView& model);
+std::unique_ptr<Technique> make_fuzzy_kdtree(const ModelView& model);
+std::unique_ptr<Technique> make_hybrid_bvh(const ModelView& model);
+std::unique_ptr<Technique> make_rebuild_bvh(const ModelView& model);
+std::unique_ptr<Technique> make_refit_bvh(const ModelView& model);
+std::unique_ptr<Technique> make_static_kdtree(const ModelView& model);
+std::unique_ptr<Technique> make_tsah_refit(const ModelView& model);
 
 }  // namespace mdk

@@ -55,7 +55,7 @@ std::string formatted(const char* format, Values... values) {
 
 }  // namespace
 
-TechniqueChooser::TechniqueChooser(const Model& model,
+TechniqueChooser::TechniqueChooser(const ModelView& model,
                                    std::span<const TechniqueCandidate> candidates)
     : model_(model),
       candidates_(candidates),
@@ -136,7 +136,7 @@ Technique& TechniqueChooser::candidate(std::size_t i) {
 /// Whether a choice made for `a` can be expected to hold for `b`.
 bool TechniqueChooser::is_near(const PinholeRays& a, const PinholeRays& b) const {
   const float distance =
-      std::max(length(a.origin - model_.bounds.center()), 0.1f * model_.bounds.diagonal());
+      std::max(length(a.origin - model_.bounds.center()), 0.1f * diagonal(model_.bounds));
   if (length(b.origin - a.origin) > 0.2f * distance) return false;
   const float zoom = length(b.du) / length(a.du);
   if (!(zoom > 0.75f && zoom < 1.33f)) return false;

@@ -23,14 +23,14 @@ namespace mdk {
 
 struct TechniqueCandidate {
   std::string_view id;
-  std::unique_ptr<Technique> (*make)(const Model&);
+  std::unique_ptr<Technique> (*make)(const ModelView&);
 };
 
 class TechniqueChooser final : public Technique {
  public:
   /// `candidates`: at least one; the first serves until another has proved better. The list must
   /// live as long as this does.
-  TechniqueChooser(const Model& model, std::span<const TechniqueCandidate> candidates);
+  TechniqueChooser(const ModelView& model, std::span<const TechniqueCandidate> candidates);
 
   void prebuild(const PosedMesh& mesh) override;
   void update(const PosedMesh& mesh) override;
@@ -72,7 +72,7 @@ class TechniqueChooser final : public Technique {
   std::size_t next_to_serve(View& view);
   bool can_afford(const View& view, std::size_t challenger) const;
 
-  const Model& model_;
+  const ModelView& model_;
   std::span<const TechniqueCandidate> candidates_;
   std::vector<std::unique_ptr<Technique>> techniques_;  ///< made when first needed
   std::vector<View> views_;                             ///< the current one last

@@ -90,7 +90,7 @@ BoneClusters assign_to_bones(const PoseSequence& sequence, std::span<const std::
     for (const std::uint32_t bone : bones_of(rig, sequence.triangles[t]))
       offers[bone].triangles.push_back(t);
   std::vector<double> areas;
-  for (const std::uint32_t key : keys) areas.push_back(pose_box(sequence.pose(key)).surface_area());
+  for (const std::uint32_t key : keys) areas.push_back(surface_area(pose_box(sequence.pose(key))));
   const Candidates candidates{sequence, keys, areas, space};
   parallel_chunks(bone_count, 1, [&](std::size_t bone, std::size_t) {
     if (!offers[bone].triangles.empty())

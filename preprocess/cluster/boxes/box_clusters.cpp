@@ -130,7 +130,7 @@ double entry_growth(const BoxProblem& problem, const BoxCluster& cluster, const 
     const Aabb& box = cluster.world_boxes[row];
     Aabb grown = box;
     for (const std::uint32_t v : t.v) grown.extend(to_float(table.position(row, v)));
-    sum += (grown.surface_area() - box.surface_area()) / problem.measure.model_areas[row];
+    sum += (surface_area(grown) - surface_area(box)) / problem.measure.model_areas[row];
   }
   return sum / rows * kEnteringCost;
 }

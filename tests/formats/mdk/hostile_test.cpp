@@ -22,7 +22,7 @@ constexpr std::size_t kOffsetOfFileSize = 16;
 /// is optimised away.
 class Walk {
  public:
-  explicit Walk(const Model& model) : model_(model), poses_(model.key_count()) {}
+  explicit Walk(const ModelView& model) : model_(model), poses_(model.key_count()) {}
 
   std::uint64_t everything() {
     for (std::uint32_t clip = 0; clip < model_.clips.size(); ++clip) times(clip);
@@ -124,7 +124,7 @@ class Walk {
     }
   }
 
-  const Model& model_;
+  const ModelView& model_;
   std::vector<std::vector<Vec3f>> poses_;
   std::uint64_t digest_ = 0;
 };
@@ -140,7 +140,7 @@ struct Tally {
       return;
     }
     ++walked;
-    const Model model = opened->view();
+    const ModelView model = opened->view();
     digest += Walk(model).everything();
   }
 };

@@ -35,7 +35,7 @@ std::uint32_t hits_in(const HitBuffer& hits, std::uint32_t triangles) {
 
 /// Renders in all techniques and shadings; returns how many pixels were hit altogether.
 std::uint32_t render_everything(const ModelStorage& storage) {
-  const Model model = storage.view();
+  const ModelView model = storage.view();
   std::uint32_t hits = 0;
   for (const TechniqueInfo& technique : technique_table()) {
     Renderer renderer(model, technique.id);
@@ -81,7 +81,7 @@ TEST(MdkHostileTrace, BoundsOfAnySizeCanBeLit) {
       ModelStorage storage = sample_model();
       storage.bounds.lo[axis] = -far;
       storage.bounds.hi[axis] += axis == 0 ? far : 0.0f;
-      const Model model = storage.view();
+      const ModelView model = storage.view();
       for (const TechniqueInfo& technique : technique_table()) {
         Renderer renderer(model, technique.id);
         renderer.render({.at = at_key(model.rest_key),

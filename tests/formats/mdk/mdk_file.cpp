@@ -38,14 +38,14 @@ void MdkFileTest::expect_refused(const Bytes& bytes, const std::string& words) {
   expect_error(ErrorCode::kBadInput, words, [&] { MdkFile file(path_); });
 }
 
-void expect_same_model(const Model& mapped, const ModelStorage& original) {
+void expect_same_model(const ModelView& mapped, const ModelStorage& original) {
   EXPECT_EQ(mapped.vertex_count, original.vertex_count);
   EXPECT_EQ(mapped.rest_key, original.rest_key);
   EXPECT_EQ(mapped.bounds, original.bounds);
   EXPECT_EQ(mapped.rest_diagonal, original.rest_diagonal);
   EXPECT_THAT(mapped.clips, testing::ElementsAreArray(original.clips));
   EXPECT_EQ(mapped.poses.kind, original.poses.kind);
-  Model::for_each_array(
+  ModelView::for_each_array(
       [](const ModelArray& row, const auto& a, const auto& b) { expect_same(row.name, a, b); },
       mapped, original);
 }

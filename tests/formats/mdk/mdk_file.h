@@ -24,6 +24,6 @@ class MdkFileTest : public testing::Test {
 };
 
 /// Byte by byte, and each list where a file of such sections has to have it.
-void expect_same_model(const Model& mapped, const ModelStorage& original);
+void expect_same_model(const ModelView& mapped, const ModelStorage& original);
 
 }  // namespace mdk::test

@@ -36,7 +36,7 @@ TEST_F(MdkFileTest, GivesBackEveryListAndNumber) {
   EXPECT_EQ(file.path(), path_);
 }
 
-void expect_poses_of_the_sample(const Model& model) {
+void expect_poses_of_the_sample(const ModelView& model) {
   const ModelStorage keys = sample_model();
   for (std::uint32_t key = 0; key < model.key_count(); ++key) {
     std::vector<Vec3f> pose(model.vertex_count);
@@ -70,7 +70,7 @@ TEST_F(MdkFileTest, GivesBackAModelWithoutAnyOptionalList) {
   original.appearance.materials[1].texture = kNoTexture;
   for (Clip& clip : original.clips) clip.name.clear();
   const MdkFile file(written(original));
-  const Model& model = file.model();
+  const ModelView& model = file.model();
   EXPECT_TRUE(model.appearance.corner_colors.empty());
   EXPECT_TRUE(model.appearance.corner_texcoords.empty());
   EXPECT_TRUE(model.appearance.textures.empty());

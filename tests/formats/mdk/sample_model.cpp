@@ -185,7 +185,7 @@ ModelStorage sample_skeleton_model() {
   return model;
 }
 
-ModelStorage copy_of(const Model& model) {
+ModelStorage copy_of(const ModelView& model) {
   ModelStorage copy;
   assign_model(copy, model);
   return copy;

@@ -23,6 +23,6 @@ ModelStorage sample_skeleton_model();
 
 /// A model's arrays, each in a block of memory of its own: where AddressSanitizer sees one step
 /// outside.
-ModelStorage copy_of(const Model& model);
+ModelStorage copy_of(const ModelView& model);
 
 }  // namespace mdk::test

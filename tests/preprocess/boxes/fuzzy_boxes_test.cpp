@@ -40,7 +40,7 @@ KeyInterval random_moment(const ModelStorage& model, std::mt19937& random) {
 /// the way tracing computes them: vertices in float, maps by interpolate().
 std::size_t escapes(const ModelStorage& storage, std::span<const Aabb> boxes, int samples,
                     std::mt19937& random) {
-  const Model model = storage.view();
+  const ModelView model = storage.view();
   PosedMesh mesh(model);
   std::size_t outside = 0;
   for (int i = 0; i < samples; ++i) {
@@ -165,7 +165,7 @@ TEST(FuzzyBoxes, AreAsSmallAsTheTrianglesOfRigidParts) {
   for (std::size_t t = 0; t < boxes.size(); ++t) {
     Aabbd rest;
     for (const std::uint32_t v : mesh.triangles[t].v) rest.extend(mesh.vertices[v]);
-    EXPECT_LT(boxes[t].diagonal(), rest.diagonal() + 2e-5);
+    EXPECT_LT(diagonal(boxes[t]), diagonal(rest) + 2e-5);
   }
 }
 
@@ -199,7 +199,7 @@ TEST(FuzzyBoxes, LieInTheirClustersLocalBox) {
 TEST(FuzzyBoxes, AreNotMuchLargerThanTheCurvesInThem) {
   // The boxes must be conservative, not lazy: samples of the curves come close to every side.
   const ModelStorage storage = decomposed(wild_motion(63, 5), 2).model;
-  const Model model = storage.view();
+  const ModelView model = storage.view();
   PosedMesh mesh(model);
   std::vector<Aabbd> seen(model.triangle_count());
   for (const Clip& clip : model.clips)
@@ -219,7 +219,7 @@ TEST(FuzzyBoxes, AreNotMuchLargerThanTheCurvesInThem) {
       }
   const std::vector<Aabb> boxes = first_fuzzy_boxes(storage);
   for (std::uint32_t t = 0; t < model.triangle_count(); ++t) {
-    const double slack = 0.35 * seen[t].diagonal();
+    const double slack = 0.35 * diagonal(seen[t]);
     for (std::size_t axis = 0; axis < 3; ++axis) {
       EXPECT_NEAR(boxes[t].lo[axis], seen[t].lo[axis], slack);
       EXPECT_NEAR(boxes[t].hi[axis], seen[t].hi[axis], slack);
@@ -234,7 +234,7 @@ TEST(ClusterWorldBoxes, HoldTheirVerticesAtEveryTime) {
     if (seed % 2 == 1)
       for (Vec3f& v : sequence.positions) v = v + Vec3f{7e5f, 0.0f, -4e6f};
     const ModelStorage storage = decomposed(std::move(sequence), 3).model;
-    const Model model = storage.view();
+    const ModelView model = storage.view();
     PosedMesh mesh(model);
     std::size_t outside = 0;
     for (int i = 0; i < 2000; ++i) {

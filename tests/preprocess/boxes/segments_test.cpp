@@ -49,7 +49,7 @@ DecomposeResult baked(const PoseSequence& sequence, std::uint32_t segments,
 }
 
 /// Corners outside their boxes at a moment, in every segment that has it.
-std::size_t escapes(const Model& model, const KeyInterval& at) {
+std::size_t escapes(const ModelView& model, const KeyInterval& at) {
   PosedMesh mesh(model);
   mesh.set_time(at);
   std::size_t outside = 0, looked_at = 0;
@@ -78,7 +78,7 @@ TEST(Segments, TheirBoxesHoldAtEveryTimeAndAtTheCuts) {
     std::printf("seed %u\n", seed);
     std::mt19937 random(seed);
     const DecomposeResult result = baked(wild_motion(seed, 12 + seed % 3), 2 + seed % 4, 3);
-    const Model model = result.model.view();
+    const ModelView model = result.model.view();
     ASSERT_EQ(model.segment_count(), 2 + seed % 4);
     std::size_t outside = 0;
     std::uniform_real_distribution<float> any_s(0, 1);
@@ -98,7 +98,7 @@ TEST(Segments, TheirBoxesHoldAtEveryTimeAndAtTheCuts) {
 TEST(Segments, TheSegmentOfAMomentHoldsBothItsKeys) {
   for (const std::uint32_t count : {1u, 3u, 7u, 100u}) {
     const DecomposeResult result = baked(wild_motion(97, 17), count, 2);
-    const Model model = result.model.view();
+    const ModelView model = result.model.view();
     const auto expect_held = [&](const KeyInterval& at) {
       const Segment& segment = model.segments[segment_of(model, at)];
       EXPECT_LE(segment.first_key, at.key0);

@@ -37,7 +37,7 @@ DecomposeResult baked(PoseSequence sequence, const DecomposeOptions& options) {
 
 /// Corners outside the fuzzy boxes that hold for the mesh's current pose.
 std::size_t escapes(const PosedMesh& mesh) {
-  const Model& model = mesh.model();
+  const ModelView& model = mesh.model();
   const std::uint32_t segment = mesh.is_live() ? 0 : segment_of(model, mesh.at());
   std::size_t outside = 0;
   for (std::uint32_t c = 0; c < model.cluster_count(); ++c) {
@@ -96,7 +96,7 @@ TEST(BoneClusters, RigidPartsAreAClusterEachWithBoxesAsSmallAsTheTriangles) {
 TEST(BoneClusters, BoxesHoldAtEveryTimeOfTheClips) {
   const SkinnedMesh mesh = random_skinned_mesh(321, 9, 60 * kDegree);
   const DecomposeResult result = baked(mesh.sequence, bones());
-  const Model model = result.model.view();
+  const ModelView model = result.model.view();
   EXPECT_TRUE(model.skeleton.joints.empty()) << "a cycle needs none";
   PosedMesh posed(model);
   std::mt19937 random(321);
@@ -116,7 +116,7 @@ TEST(BoneClusters, ATriangleGoesToTheBoneWithTheSmallestBox) {
   const std::vector<std::uint32_t> keys = all_keys(s);
   const BoneClusters clusters = assign_to_bones(s, keys, nullptr);
   std::vector<double> model_areas;
-  for (const std::uint32_t key : keys) model_areas.push_back(pose_box(s.pose(key)).surface_area());
+  for (const std::uint32_t key : keys) model_areas.push_back(surface_area(pose_box(s.pose(key))));
   for (std::uint32_t t = 0; t < s.triangles.size(); ++t) {
     double least = INFINITY, own = INFINITY;
     for (const std::uint32_t v : s.triangles[t].v)
@@ -145,7 +145,7 @@ TEST(BoneClusters, ABoneThatIsFlatForAWhileGivesAUsableModel) {
     for (auto& row : bone->m) row[0] = row[1] = row[2] = 0;
   decode_positions(sequence);
   const DecomposeResult result = baked(sequence, bones());
-  const Model model = result.model.view();
+  const ModelView model = result.model.view();
   PosedMesh posed(model);
   for (std::uint32_t key = 0; key + 1 < model.key_count(); ++key)
     for (const float s : {0.0f, 0.3f, 0.9f}) {
@@ -160,7 +160,7 @@ TEST(PoseSpaceModel, HoldsInThousandsOfPosesThatNoClipContains) {
     std::printf("seed %u\n", seed);
     const SkinnedMesh mesh = random_skinned_mesh(seed, 5, degrees * kDegree);
     const DecomposeResult result = baked(mesh.sequence, bones(PoseSampling::kPoseSpace, degrees));
-    const Model model = result.model.view();
+    const ModelView model = result.model.view();
     ASSERT_EQ(model.skeleton.joints.size(), mesh.skeleton.joints.size());
     ASSERT_EQ(model.segment_count(), 1u);
     PosedMesh posed(model);
@@ -185,7 +185,7 @@ TEST(PoseSpaceModel, HoldsInThousandsOfPosesThatNoClipContains) {
 TEST(PoseSpaceModel, EveryTechniqueThatPosesByHandGivesBruteForcesHits) {
   const SkinnedMesh mesh = random_skinned_mesh(341, 4, 80 * kDegree);
   const DecomposeResult result = baked(mesh.sequence, bones(PoseSampling::kPoseSpace, 80));
-  const Model model = result.model.view();
+  const ModelView model = result.model.view();
   Renderer oracle(model, "brute-force"), renderer(model, "brute-force");
   std::mt19937 random(341);
   std::uint64_t hits = 0;
@@ -219,7 +219,7 @@ TEST(PoseSpaceModel, WiderLimitsMakeMoreExpensiveBoxes) {
 TEST(PoseSpaceModel, TellsPosesPastTheLimitAndPosesOfOtherSkeletons) {
   const SkinnedMesh mesh = random_skinned_mesh(343, 3, 30 * kDegree);
   const DecomposeResult result = baked(mesh.sequence, bones(PoseSampling::kPoseSpace, 30));
-  const Model model = result.model.view();
+  const ModelView model = result.model.view();
   SkeletonPose pose{std::vector<Vec3d>(model.skeleton.joints.size()), {0, 0}};
   pose.turns[4] = {0, 29 * kDegree, 0};
   EXPECT_EQ(joint_past_limit(model.skeleton, pose), kNoParent);

@@ -39,7 +39,7 @@ DecomposeResult quantized(const PoseSequence& sequence, std::optional<double> er
 TEST(QuantizedPoses, NoVertexIsFartherOffThanAskedFor) {
   const PoseSequence source = bending_parts();
   const ModelStorage storage = quantized(source, kError).model;
-  const Model model = storage.view();
+  const ModelView model = storage.view();
   ASSERT_EQ(model.poses.kind, PoseKind::kQuantized);
   PosedMesh mesh(model);
   double largest = 0;
@@ -70,7 +70,7 @@ TEST(QuantizedPoses, TakeLessRoomThanKeyPositions) {
 
 TEST(QuantizedPoses, BoxesHoldWhatIsDecoded) {
   const ModelStorage storage = quantized(bending_parts(), 1e-3).model;
-  const Model model = storage.view();
+  const ModelView model = storage.view();
   PosedMesh mesh(model);
   for (std::uint32_t key = 0; key < model.key_count(); ++key) {
     mesh.set_time(at_key(key));

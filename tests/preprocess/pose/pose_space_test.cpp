@@ -84,7 +84,7 @@ TEST(PoseSpace, WithoutAnyTurnABoxIsHardlyLargerThanTheVertex) {
   std::mt19937 random(312);
   const Bounded bounded(mesh, random);
   for (const std::vector<Aabbd>& boxes : bounded.boxes)
-    for (const Aabbd& box : boxes) EXPECT_LT(box.diagonal(), 1e-3);
+    for (const Aabbd& box : boxes) EXPECT_LT(diagonal(box), 1e-3);
 }
 
 TEST(PoseSpace, ABoxAroundOneJointIsItsCapsOwn) {

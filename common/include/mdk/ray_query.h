@@ -1,0 +1,90 @@
+// RayQuery: single rays for shadows, ambient occlusion and programs. Each ray may have a time of
+// its own: the structures of a model hold at every time, so one query serves motion blur, a rolling
+// shutter, a lidar sweep and a crowd in which everyone is at another time (docs/ray-queries.md).
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <memory>
+
+#include "mdk/geometry.h"
+#include "mdk/model.h"
+
+namespace mdk {
+
+/// origin + t direction, for t in (t_min, t_max]; both may be negative. A ray that has no direction
+/// or is not finite hits nothing.
+struct QueryRay {
+  Vec3f origin;
+  Vec3f direction;  ///< of any length but zero; t counts in this length
+  float t_min = 0;
+  float t_max = std::numeric_limits<float>::infinity();
+};
+
+constexpr std::uint32_t kNoTriangle = 0xFFFFFFFF;
+
+/// What was hit: kNoTriangle and an infinite t for nothing.
+struct QueryHit {
+  float t = std::numeric_limits<float>::infinity();
+  std::uint32_t triangle = kNoTriangle;
+  float bary1 = 0, bary2 = 0;  ///< barycentric coordinates of corners 1 and 2
+
+  bool is_hit() const { return triangle != kNoTriangle; }
+};
+
+/// One time made ready for many rays. Copies are cheap; each keeps what it needs alive.
+class QueryMoment {
+ public:
+  // No moves: a moment is never empty.
+  QueryMoment(const QueryMoment&) = default;
+  QueryMoment& operator=(const QueryMoment&) = default;
+
+ private:
+  friend class RayQuery;
+  struct Data;
+  explicit QueryMoment(std::shared_ptr<const Data> data);
+  std::shared_ptr<const Data> data_;
+};
+
+/// Copies are cheap and count as one query. All members but the constructor may be called from many
+/// threads at once. Times are of Model::locate_time() or at_key(); one that the model does not have
+/// throws Error (kUsage).
+class RayQuery {
+ public:
+  /// Builds one hierarchy per cluster and segment, and keeps the model. Cost: O(segments * T log
+  /// T). Runs in parallel. Key poses that are not stored as positions are decoded when a ray first
+  /// asks for them, and kept: 12 bytes a vertex for every such key.
+  explicit RayQuery(const Model& model);
+
+  // No moves: a query is never empty.
+  RayQuery(const RayQuery&) = default;
+  RayQuery& operator=(const RayQuery&) = default;
+
+  /// The closest hit at the ray's own time, ties to the lower triangle: brute force's over the same
+  /// triangle test, bit for bit, on every machine. No ray slips between triangles that share an
+  /// edge. Cost: O(clusters) on top of the walk.
+  QueryHit closest_hit(const QueryRay& ray, const KeyInterval& time) const;
+
+  /// Whether the ray hits anything at its own time.
+  bool any_hit(const QueryRay& ray, const KeyInterval& time) const;
+
+  /// For many rays at one time: what they share, computed once. O(clusters).
+  QueryMoment prepare(const KeyInterval& time) const;
+  /// Throws Error (kUsage) for a moment of another query.
+  QueryHit closest_hit(const QueryRay& ray, const QueryMoment& moment) const;
+  bool any_hit(const QueryRay& ray, const QueryMoment& moment) const;
+
+  /// `count` rays, each at its own time: ray i at times[i] gives hits[i], of any_hits() 0 or 1. Run
+  /// in parallel. Where a time is not the model's, some hits may have been written.
+  void closest_hits(const QueryRay* rays, const KeyInterval* times, QueryHit* hits,
+                    std::size_t count) const;
+  void any_hits(const QueryRay* rays, const KeyInterval* times, std::uint8_t* hits,
+                std::size_t count) const;
+
+ private:
+  struct State;
+  std::shared_ptr<const State> state_;
+};
+
+}  // namespace mdk
