@@ -23,7 +23,7 @@ namespace mdk {
 
 /// What the clusters themselves cost a ray that hits the model, in units of a triangle box hit:
 /// entering one, and one more that the top level looks at, entered or not. Fitted to the times of
-/// single rays and of tiles through 63 bakes of 2 to 140 clusters (docs/method.md, cost).
+/// single rays and of tiles through 50 bakes of 2 to 140 clusters (docs/method.md, cost).
 inline constexpr double kEnteringCost = 6, kClusterCost = 0.12;
 
 /// World area of a local box with extent e, as weights of its sides.
