@@ -114,9 +114,9 @@ double fuzzy_area(std::span<const ClusterWork> clusters) {
 }
 
 double expected_work(std::span<const ClusterWork> clusters) {
-  double entered = 0;
-  for (const ClusterWork& c : clusters) entered += c.hit_probability;
-  return fuzzy_area(clusters) + entered * kEnteringCost;
+  double sum = 0;
+  for (const ClusterWork& c : clusters) sum += c.cost();
+  return sum;
 }
 
 }  // namespace mdk

@@ -21,10 +21,10 @@
 
 namespace mdk {
 
-/// Of entering a cluster, in units of a triangle box tested. docs/measure_entering.sh measures it:
-/// rays of no preferred place or direction pay 2.6 to 9, by what the number of clusters is held to
-/// cost besides.
-inline constexpr double kEnteringCost = 5;
+/// What the clusters themselves cost a ray that hits the model, in units of a triangle box hit:
+/// entering one, and one more that the top level looks at, entered or not. Fitted to the times of
+/// single rays and of tiles through 50 bakes of 2 to 140 clusters (docs/method.md, cost).
+inline constexpr double kEnteringCost = 6, kClusterCost = 0.12;
 
 /// World area of a local box with extent e, as weights of its sides.
 AreaWeights world_area_weights(const Affine3d& local_from_world);
@@ -96,7 +96,9 @@ struct ClusterWork {
   double hit_probability = 0;  ///< see mean_hit_probability
 
   double area() const { return fuzzy_boxes.area(weights); }
-  double cost() const { return area() + hit_probability * kEnteringCost; }
+  /// What a ray pays for the cluster besides its boxes.
+  double overhead() const { return hit_probability * kEnteringCost + kClusterCost; }
+  double cost() const { return area() + overhead(); }
 };
 
 /// Sum over triangles of the fuzzy boxes' mean areas in units of the model's: the triangle boxes

@@ -57,7 +57,7 @@ inline std::vector<std::uint32_t> sorted_unique(std::vector<std::uint32_t> numbe
 
 /// How far growth is, as a share that rises with the clusters.
 inline double growth_share(std::uint32_t clusters) {
-  return 0.05 + 0.95 * clusters / (clusters + 40.0);
+  return 0.05 + 0.95 * clusters / (clusters + 12.0);
 }
 
 }  // namespace mdk

@@ -63,4 +63,10 @@ BoxClustering make_splits(const BoxProblem& problem, const BoxClustering& cluste
 /// Dissolves clusters whose triangles would cost less elsewhere, as long as the cost falls.
 BoxClustering dissolve_clusters(const BoxProblem& problem, BoxClustering clustering);
 
+/// Dissolves up to `count` clusters that lose least by it and cuts as many others in two that gain
+/// most, where both together gain; fitted, not relaxed. What Lloyd rounds cannot do: take a cluster
+/// from where it is hardly needed to where it is missed. There may be fewer clusters afterwards.
+BoxClustering exchange_clusters(const BoxProblem& problem, const BoxClustering& clustering,
+                                std::uint32_t count);
+
 }  // namespace mdk

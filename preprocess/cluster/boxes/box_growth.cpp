@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -23,21 +24,26 @@ constexpr std::size_t kWholeTriangles = 24'000;  // larger meshes are thinned to
 constexpr std::size_t kThinTriangles = 6'000;    // ...so many, which rarely share vertices
 constexpr std::size_t kFineEntries = 400'000, kMinFineKeys = 16;
 constexpr std::size_t kRestCandidates = 2;
+constexpr double kRoughShare = 0.4;  // of the work that growth is
 
 constexpr std::uint32_t kMaxGrown = 80;    // clusters, where none are requested
 constexpr double kMinCutGain = -0.1;       // a cut may cost a little: relaxation pays it back
-constexpr double kMinStageGain = 0.005;    // share of the cost that a stage must save to go on
 constexpr int kLeaps = 3;                  // stages that may raise the cost before growth gives up
 constexpr std::uint32_t kFewClusters = 8;  // with more, a stage that saves nothing is the last
 constexpr RelaxLimits kPolish = {.min_gain = 0.0005, .max_rounds = 4};
 constexpr std::uint32_t kPolishShare = 10;  // at most one cluster in so many is cut at a time
+constexpr int kExchangeRounds = 6;
+constexpr std::uint32_t kExchangeShare =
+    8;  // at most one cluster in so many is exchanged at a time
 
 /// How far clusters grow, and with how much care.
 struct BoxGrowthPlan {
   std::uint32_t clusters = 0;       ///< exactly so many; 0: as many as pay
   std::uint32_t limit = kMaxGrown;  ///< without an exact count
   RelaxLimits relax{.min_gain = 0.005, .max_rounds = 3};
-  int polish_rounds = 0;  ///< of careful cuts at the end, where growth ended because of the cost
+  int polish_rounds = 0;    ///< of careful cuts at the end, where growth ended because of the cost
+  int exchange_rounds = 0;  ///< after all others
+  double min_stage_gain = 0.01;  ///< share of the cost that a stage must save to go on
 
   std::uint32_t target() const { return clusters != 0 ? clusters : limit; }
 };
@@ -107,6 +113,18 @@ BoxClustering polished(const BoxProblem& problem, const BoxClustering& clusterin
   return cut.cost < next.cost ? cut : next;
 }
 
+/// One round of exchanges, at first of many clusters, then of fewer; kept where all has paid.
+BoxClustering exchanged(const BoxProblem& problem, const BoxClustering& clustering,
+                        const BoxGrowthPlan& plan, int round) {
+  const std::uint32_t share = round < 2 ? kExchangeShare : 2 * kExchangeShare;
+  BoxClustering next =
+      exchange_clusters(problem, clustering, std::max(1u, clustering.cluster_count / share));
+  next = relax_boxes(problem, std::move(next), plan.relax);
+  const bool is_better =
+      next.cost < clustering.cost && next.cluster_count == clustering.cluster_count;
+  return is_better ? next : clustering;
+}
+
 /// `start`: a cluster per triangle. `on_step` is called with the start and after each stage.
 Growth grow_boxes(const BoxProblem& problem, std::vector<std::uint32_t> start,
                   const BoxGrowthPlan& plan, const OnGrowthStep& on_step) {
@@ -122,7 +140,7 @@ Growth grow_boxes(const BoxProblem& problem, std::vector<std::uint32_t> start,
   const auto advance = [&](BoxClustering next) {  // whether it pays to go on
     const double gain = state.cost - next.cost;
     if (!(gain > 0)) return false;
-    const bool is_last = gain < kMinStageGain * state.cost;
+    const bool is_last = gain < plan.min_stage_gain * state.cost;
     state = std::move(next);
     record();
     return !is_last;
@@ -142,6 +160,8 @@ Growth grow_boxes(const BoxProblem& problem, std::vector<std::uint32_t> start,
   } else if (state.cluster_count >= plan.target()) {
     growth.stop_reason = StopReason::kLimit;
   }
+  for (int round = 0; round < plan.exchange_rounds && state.cluster_count > 1; ++round)
+    if (!advance(exchanged(problem, state, plan, round))) break;
   static_cast<Assignment&>(growth) = std::move(state);
   return growth;
 }
@@ -233,6 +253,18 @@ Growth grow_roughly(const MovingMesh& mesh, const ClusterRequest& request,
   return growth;
 }
 
+/// The clusters of the rig's bones, where there is one and they are not too many: whoever made it
+/// knew what moves alike.
+std::optional<std::vector<std::uint32_t>> bone_start(const BoxProblem& problem,
+                                                     const PoseSequence& sequence,
+                                                     const BoxGrowthPlan& plan) {
+  if (!sequence.rig) return std::nullopt;
+  std::vector<std::uint32_t> keys = sorted_unique(problem.mesh.poses.keys);
+  BoneClusters bones = assign_to_bones(sequence, keys, nullptr);
+  if (bones.cluster_count > plan.target()) return std::nullopt;
+  return std::move(bones.cluster_of_triangle);
+}
+
 }  // namespace
 
 Growth cluster_by_boxes(const PoseSequence& sequence, const ClusterRequest& request, double unit,
@@ -245,6 +277,8 @@ Growth cluster_by_boxes(const PoseSequence& sequence, const ClusterRequest& requ
   const PoseTable few = sample_poses(sequence, kRoughKeys, request.rest_key, unit);
   progress.report("decompose", farthest);
   Growth rough = grow_roughly({few, sequence.triangles}, request, on_step);
+  farthest = std::max(farthest, kRoughShare);
+  progress.report("decompose", farthest);
 
   const std::size_t affordable = kFineEntries / std::max(1u, sequence.vertex_count);
   const PoseTable many =
@@ -254,8 +288,13 @@ Growth cluster_by_boxes(const PoseSequence& sequence, const ClusterRequest& requ
   BoxGrowthPlan plan;
   plan.clusters = request.clusters;
   plan.relax.max_rounds = 2;
-  plan.polish_rounds = 2;
-  Growth fine = grow_boxes(problem, std::move(rough.cluster_of_triangle), plan, on_step);
+  plan.polish_rounds = 1;
+  plan.exchange_rounds = kExchangeRounds;
+  if (request.clusters != 0) plan.min_stage_gain = 0.0005;  // it is all that can be chosen
+  std::vector<std::uint32_t> start = std::move(rough.cluster_of_triangle);
+  if (std::optional<std::vector<std::uint32_t>> bones = bone_start(problem, sequence, plan))
+    if (fit_boxes(problem, *bones).cost < fit_boxes(problem, start).cost) start = std::move(*bones);
+  Growth fine = grow_boxes(problem, std::move(start), plan, on_step);
   rough.steps.pop_back();  // the fine growth starts with it again
   fine.steps.insert(fine.steps.begin(), rough.steps.begin(), rough.steps.end());
   return fine;

@@ -221,12 +221,68 @@ ClusterOffer find_split(const BoxMeasure& measure, const ClusterPoints& all_rows
 std::vector<double> dissolving_gains(const BoxClustering& clustering,
                                      const BoxAlternatives& alternatives) {
   std::vector<double> gains(clustering.cluster_count);
-  for (std::size_t c = 0; c < gains.size(); ++c)
-    gains[c] = clustering.clusters[c].work.hit_probability * kEnteringCost;
+  for (std::size_t c = 0; c < gains.size(); ++c) gains[c] = clustering.clusters[c].work.overhead();
   for (std::size_t t = 0; t < clustering.cluster_of_triangle.size(); ++t)
     gains[clustering.cluster_of_triangle[t]] -=
         static_cast<double>(alternatives.other_area[t]) - alternatives.own_area[t];
   return gains;
+}
+
+/// An assignment on its way to another one, in which some clusters are dissolved into those whose
+/// boxes suit their triangles best, and some are cut.
+class Rearrangement {
+ public:
+  Rearrangement(const BoxClustering& clustering, const BoxAlternatives& alternatives)
+      : clustering_(clustering),
+        alternatives_(alternatives),
+        state_(clustering.cluster_count, State::kAsItWas),
+        assignment_(clustering.cluster_of_triangle) {}
+
+  /// Whether that can be done: not to one that has taken in others' triangles or was cut, nor
+  /// into one that is gone.
+  bool dissolve(std::uint32_t c) {
+    if (state_[c] != State::kAsItWas) return false;
+    for (std::size_t t = 0; t < assignment_.size(); ++t)
+      if (clustering_.cluster_of_triangle[t] == c &&
+          state_[alternatives_.other[t]] == State::kDissolved)
+        return false;
+    state_[c] = State::kDissolved;
+    for (std::size_t t = 0; t < assignment_.size(); ++t)
+      if (clustering_.cluster_of_triangle[t] == c) {
+        assignment_[t] = alternatives_.other[t];
+        state_[alternatives_.other[t]] = State::kChanged;
+      }
+    return true;
+  }
+
+  /// A cut, the part of `c` that leaves becoming cluster `as`. Whether it can be made: not of a
+  /// cluster that was changed before.
+  bool cut(std::uint32_t c, const ClusterOffer& offer, std::uint32_t as) {
+    if (state_[c] != State::kAsItWas) return false;
+    state_[c] = State::kChanged;
+    for (const std::uint32_t t : offer.triangles) assignment_[t] = as;
+    return true;
+  }
+
+  bool may_change(std::uint32_t c) const { return state_[c] == State::kAsItWas; }
+  const std::vector<std::uint32_t>& assignment() const { return assignment_; }
+
+ private:
+  enum class State : char { kAsItWas, kChanged, kDissolved };
+
+  const BoxClustering& clustering_;
+  const BoxAlternatives& alternatives_;
+  std::vector<State> state_;
+  std::vector<std::uint32_t> assignment_;
+};
+
+/// The clusters by what is gained with each, most first.
+std::vector<std::uint32_t> by_gain(const std::vector<double>& gains) {
+  std::vector<std::uint32_t> order(gains.size());
+  std::iota(order.begin(), order.end(), 0u);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::uint32_t a, std::uint32_t b) { return gains[a] > gains[b]; });
+  return order;
 }
 
 }  // namespace
@@ -262,35 +318,42 @@ BoxClustering dissolve_clusters(const BoxProblem& problem, BoxClustering cluster
   while (clustering.cluster_count > 1) {
     const BoxAlternatives alternatives = find_alternatives(problem, clustering);
     const std::vector<double> gains = dissolving_gains(clustering, alternatives);
-    std::vector<std::uint32_t> order(gains.size());
-    std::iota(order.begin(), order.end(), 0u);
-    std::stable_sort(order.begin(), order.end(),
-                     [&](std::uint32_t a, std::uint32_t b) { return gains[a] > gains[b]; });
-    // At most every fourth at a time, and none that takes in another's triangles.
-    std::vector<char> dissolved(gains.size(), 0), receives(gains.size(), 0);
+    Rearrangement rearrangement(clustering, alternatives);
     std::size_t count = 0;
-    std::vector<std::uint32_t> assignment = clustering.cluster_of_triangle;
-    for (const std::uint32_t c : order) {
-      if (gains[c] <= 0 || count > gains.size() / 4) break;
-      if (receives[c]) continue;
-      bool free = true;
-      for (std::size_t t = 0; t < assignment.size() && free; ++t)
-        free = clustering.cluster_of_triangle[t] != c || !dissolved[alternatives.other[t]];
-      if (!free) continue;
-      dissolved[c] = 1;
-      ++count;
-      for (std::size_t t = 0; t < assignment.size(); ++t)
-        if (clustering.cluster_of_triangle[t] == c) {
-          assignment[t] = alternatives.other[t];
-          receives[alternatives.other[t]] = 1;
-        }
+    for (const std::uint32_t c : by_gain(gains)) {
+      if (gains[c] <= 0 || count > gains.size() / 4) break;  // at most every fourth at a time
+      count += rearrangement.dissolve(c);
     }
     if (count == 0) break;
-    BoxClustering next = fit_boxes(problem, std::move(assignment));
+    BoxClustering next = fit_boxes(problem, rearrangement.assignment());
     if (next.cost >= clustering.cost) break;
     clustering = std::move(next);
   }
   return clustering;
+}
+
+BoxClustering exchange_clusters(const BoxProblem& problem, const BoxClustering& clustering,
+                                std::uint32_t count) {
+  const BoxAlternatives alternatives = find_alternatives(problem, clustering);
+  const std::vector<double> loss = dissolving_gains(clustering, alternatives);
+  const std::vector<ClusterOffer> splits = find_splits(problem, clustering);
+  std::vector<double> split_gains;
+  for (const ClusterOffer& split : splits)
+    split_gains.push_back(split.triangles.empty() ? -std::numeric_limits<double>::infinity()
+                                                  : split.gain);
+  Rearrangement rearrangement(clustering, alternatives);
+  const std::vector<std::uint32_t> cut_order = by_gain(split_gains);
+  auto cut = cut_order.begin();
+  for (const std::uint32_t c : by_gain(loss)) {
+    if (count == 0) break;
+    // Where the one to be cut takes in some of the dissolved one's triangles, the next one is cut.
+    while (cut != cut_order.end() && (*cut == c || !rearrangement.may_change(*cut))) ++cut;
+    if (cut == cut_order.end() || !(loss[c] + split_gains[*cut] > 0)) break;
+    if (!rearrangement.dissolve(c)) continue;
+    while (cut != cut_order.end() && !rearrangement.cut(*cut, splits[*cut], c)) ++cut;
+    --count;
+  }
+  return fit_boxes(problem, rearrangement.assignment());
 }
 
 }  // namespace mdk
