@@ -94,7 +94,7 @@ TEST(LocalBoxes, AreThoseOfEachTriangleAlone) {
   for (int round = 0; round < 20; ++round) {
     std::vector<Vec3f> positions;
     for (int i = 0; i < 47; ++i)
-      positions.push_back(to_float({entry(random), entry(random), entry(random)}));
+      positions.push_back(to_float(Vec3d{entry(random), entry(random), entry(random)}));
     if (round % 4 == 1) positions[5].y = std::numeric_limits<float>::quiet_NaN();
     if (round % 4 == 2) positions[9].z = std::numeric_limits<float>::infinity();
     if (round % 4 == 3) positions[11].x = -std::numeric_limits<float>::max();
