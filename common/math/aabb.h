@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -43,15 +44,19 @@ inline double half_area(const Aabb& box) {
   return e.x * e.y + e.y * e.z + e.z * e.x;
 }
 
+/// std::nextafter towards -infinity for all that is above it, without its call.
+inline float next_below(float f) {
+  if (f == 0) return -std::numeric_limits<float>::denorm_min();
+  const auto bits = std::bit_cast<std::uint32_t>(f);
+  return std::bit_cast<float>(f > 0 ? bits - 1 : bits + 1);
+}
 inline float round_down(double v) {
   const float f = static_cast<float>(v);
-  return static_cast<double>(f) <= v ? f
-                                     : std::nextafter(f, -std::numeric_limits<float>::infinity());
+  return static_cast<double>(f) <= v ? f : next_below(f);
 }
 inline float round_up(double v) {
   const float f = static_cast<float>(v);
-  return static_cast<double>(f) >= v ? f
-                                     : std::nextafter(f, std::numeric_limits<float>::infinity());
+  return static_cast<double>(f) >= v ? f : -next_below(-f);
 }
 
 /// The smallest float box that holds `b`.

@@ -79,6 +79,15 @@ struct KdBuildConfig {
   AreaWeights area{};
 };
 
+/// What a triangle's test costs in traversal steps. Low, because a tile tests a leaf's triangles
+/// sixteen at a time and knows those it tested in other leaves. Where the trace times of fuzzy and
+/// static trees together were least (docs/method.md, techniques).
+inline constexpr float kKdTestCost = 0.05f;
+
+/// Of every tree over triangles: the fuzzy ones in files and the static ones of single poses are
+/// built alike, so that the two compare.
+inline constexpr KdBuildConfig kTriangleTreeConfig{.intersect_cost = kKdTestCost};
+
 /// A tree whose leaves refer to `ref_base` + index into `boxes`. Every point of a box lies in the
 /// closed cell of a leaf that lists it; a tree lists at most 8 references per box. Bounds: the
 /// union of the boxes. Boxes must be finite; empty ones are left out. With no boxes: one empty

@@ -1,6 +1,10 @@
 #include "common/trace/cluster_trees.h"
 
+#include <algorithm>
 #include <cassert>
+#include <cmath>
+#include <iterator>
+#include <limits>
 
 #include "common/base/parallel.h"
 
@@ -61,6 +65,53 @@ ClusterTrees build_cluster_trees(const ModelView& model, std::uint32_t segment) 
   }
   assert(validate(built, model).empty());
   return built;
+}
+
+LocalBoxes::LocalBoxes(const ModelView& model)
+    : triangles_(model.triangles.begin(), model.triangles.end()), boxes_(model.triangle_count()) {
+  std::vector<std::uint32_t> corner_of(model.vertex_count), used;
+  for (const Cluster& cluster : model.clusters) {
+    const auto triangles =
+        std::span(triangles_).subspan(cluster.first_triangle, cluster.triangle_count);
+    used.clear();
+    for (const Triangle& t : triangles) used.insert(used.end(), std::begin(t.v), std::end(t.v));
+    std::ranges::sort(used);
+    used.erase(std::unique(used.begin(), used.end()), used.end());
+    const auto first = static_cast<std::uint32_t>(vertices_.size());
+    for (std::uint32_t i = 0; i < used.size(); ++i) corner_of[used[i]] = first + i;
+    for (Triangle& t : triangles)
+      for (std::uint32_t& v : t.v) v = corner_of[v];
+    first_triangle_.push_back(cluster.first_triangle);
+    first_corner_.push_back(first);
+    vertices_.insert(vertices_.end(), used.begin(), used.end());
+  }
+  first_triangle_.push_back(model.triangle_count());
+  first_corner_.push_back(static_cast<std::uint32_t>(vertices_.size()));
+  corner_boxes_.resize(vertices_.size());
+}
+
+std::span<const Aabb> LocalBoxes::find(std::size_t c, const Affine3d& local_from_world,
+                                       const Vec3f* positions) {
+  constexpr double kMax = std::numeric_limits<float>::max();
+  constexpr float kInf = std::numeric_limits<float>::infinity();
+  constexpr Aabb kEverywhere{{-kInf, -kInf, -kInf}, {kInf, kInf, kInf}};
+  for (std::uint32_t i = first_corner_[c]; i < first_corner_[c + 1]; ++i) {
+    const Vec3d p = local_from_world.point(to_double(positions[vertices_[i]]));
+    const bool is_finite = std::abs(p.x) < kMax && std::abs(p.y) < kMax && std::abs(p.z) < kMax;
+    corner_boxes_[i] = is_finite ? round_outward({p, p}) : kEverywhere;
+  }
+  for (std::uint32_t t = first_triangle_[c]; t < first_triangle_[c + 1]; ++t) {
+    Aabb box;
+    for (const std::uint32_t corner : triangles_[t].v) box.extend(corner_boxes_[corner]);
+    boxes_[t] = box.lo.x == -kInf ? Aabb{{0, 0, 0}, {0, 0, 0}} : box;
+  }
+  return std::span(boxes_).subspan(first_triangle_[c], first_triangle_[c + 1] - first_triangle_[c]);
+}
+
+std::size_t LocalBoxes::bytes() const {
+  return (corner_boxes_.size() + boxes_.size()) * sizeof(Aabb) +
+         triangles_.size() * sizeof(Triangle) +
+         (vertices_.size() + first_corner_.size() + first_triangle_.size()) * sizeof(std::uint32_t);
 }
 
 std::string validate(std::span<const TriangleBlock> blocks, std::span<const Triangle> triangles) {

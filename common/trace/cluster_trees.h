@@ -33,6 +33,30 @@ struct ClusterTrees {
 /// model alone.
 ClusterTrees build_cluster_trees(const ModelView& model, std::uint32_t segment);
 
+/// Boxes of the current triangles in their clusters' bases. A corner is mapped once for each
+/// cluster that uses it, not once for each triangle.
+class LocalBoxes {
+ public:
+  LocalBoxes() = default;
+  /// Cost: O(T log T).
+  explicit LocalBoxes(const ModelView& model);
+
+  /// Those of cluster `c`. As triangle_boxes() has it: a point where a corner is not finite, since
+  /// such a triangle cannot be hit. The result holds until the next call for this cluster; calls
+  /// for different clusters may run at once.
+  std::span<const Aabb> find(std::size_t c, const Affine3d& local_from_world,
+                             const Vec3f* positions);
+
+  std::size_t bytes() const;
+
+ private:
+  std::vector<std::uint32_t> first_triangle_;  ///< K + 1
+  std::vector<std::uint32_t> first_corner_;    ///< K + 1: where a cluster's corners begin
+  std::vector<std::uint32_t> vertices_;        ///< of the corners, ascending in each cluster
+  std::vector<Triangle> triangles_;            ///< T: numbers of corners
+  std::vector<Aabb> corner_boxes_, boxes_;
+};
+
 /// What is wrong with blocks that should hold each of `triangles` in one lane of one block, with
 /// its own corners, spare lanes repeating the first; empty: nothing. Cost: O(T).
 std::string validate(std::span<const TriangleBlock> blocks, std::span<const Triangle> triangles);

@@ -6,17 +6,18 @@
 namespace mdk {
 
 /// Work of tracing, summed over a frame. A tile of rays that shares one frustum counts a node once:
-/// per-ray figures are amortised, as in GFW06 Table 1.
+/// per-ray figures are amortised, as in GFW06 Table 1. A triangle in
+/// several leaves counts once for a tile: it is looked at once.
 struct TraceCounters {
-  std::uint64_t node_visits = 0;       ///< kd traversal steps or boxes tested, once per tile
-  std::uint64_t triangle_tests = 0;    ///< ray-triangle pairs evaluated
-  std::uint64_t triangle_setups = 0;   ///< tile-triangle pairs looked at before any ray
+  std::uint64_t node_visits = 0;     ///< kd traversal steps or boxes tested, once per tile
+  std::uint64_t leaf_triangles = 0;  ///< tile-triangle pairs in leaves entered, before any culling
+  std::uint64_t triangle_tests = 0;  ///< ray-triangle pairs evaluated, after culling
   std::uint64_t clusters_entered = 0;  ///< tile-cluster pairs whose local box was entered
 
   TraceCounters& operator+=(const TraceCounters& b) {
     node_visits += b.node_visits;
+    leaf_triangles += b.leaf_triangles;
     triangle_tests += b.triangle_tests;
-    triangle_setups += b.triangle_setups;
     clusters_entered += b.clusters_entered;
     return *this;
   }

@@ -68,6 +68,9 @@ struct TechniqueInfo {
   std::string_view source;
   std::unique_ptr<Technique> (*make)(const ModelView&);
   TechniqueKind kind = TechniqueKind::kStructure;
+  /// What a triangle test costs in traversal steps where its kd-trees are built, by this program
+  /// (KdBuildConfig); 0 for techniques without kd-trees.
+  float kd_cost_ratio = 0;
 
   /// How its hits are compared with brute force's.
   Agreement agreement() const {

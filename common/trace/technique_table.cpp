@@ -1,6 +1,7 @@
 #include <string>
 
 #include "common/base/error.h"
+#include "common/structures/kd_tree.h"
 #include "common/trace/technique.h"
 #include "common/trace/techniques/structure_technique.h"
 #include "common/trace/techniques/technique_chooser.h"
@@ -26,9 +27,9 @@ std::span<const TechniqueInfo> technique_table() {
       {"fuzzy-bvh", "Fuzzy BVH", "motion clusters, one hierarchy each for all poses", "Lo09 §4.3",
        make_fuzzy_bvh},
       {"fuzzy-kdtree", "Fuzzy kd-tree", "motion clusters, one kd-tree each for all poses", "GFW06",
-       make_fuzzy_kdtree},
+       make_fuzzy_kdtree, TechniqueKind::kStructure, kKdTestCost},
       {"static-kdtree", "Static kd-tree", "a kd-tree built ahead for every key", "GFW06 Table 1",
-       make_static_kdtree},
+       make_static_kdtree, TechniqueKind::kStructure, kKdTestCost},
       {"rebuild-bvh", "Rebuilt BVH", "binned SAH hierarchy, built anew every frame", "Lo09 §4.1",
        make_rebuild_bvh},
       {"refit-bvh", "Refitted BVH", "hierarchy of the rest pose, boxes refitted every frame",

@@ -101,6 +101,7 @@ std::vector<TechniqueBench> bench_techniques(const ModelView& model, const Bench
   Renderers renderers;
   for (std::size_t i = 0; i < count; ++i) {
     results[i].id = config.techniques[i];
+    results[i].kd_cost_ratio = rounded(find_technique(results[i].id).kd_cost_ratio);
     renderers.push_back(std::make_unique<Renderer>(model, config.techniques[i]));
   }
   ProgressPart counting(progress, 0, kCountUntil);

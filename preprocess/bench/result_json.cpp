@@ -55,6 +55,9 @@ class Fields {
   void optional(const char* name, Value& value) {  // text or a list
     if (is_reading() || !value.empty()) newer(name, value);
   }
+  void optional(const char* name, double& value) {
+    if (is_reading() || value != 0) newer(name, value);
+  }
   template <class Value>
   void optional(const char* name, std::optional<Value>& value) {
     if (is_reading() && has(name)) value.emplace();
@@ -128,7 +131,7 @@ void describe(Fields& io, BenchFrame& frame) {
   io.field("shade_ms", frame.shade_ms);
   io.field("node_visits", frame.counters.node_visits);
   io.field("triangle_tests", frame.counters.triangle_tests);
-  io.newer("triangle_setups", frame.counters.triangle_setups);
+  io.newer("triangle_setups", frame.counters.leaf_triangles);  // its name in files
   io.field("clusters_entered", frame.counters.clusters_entered);
   io.field("structure_bytes", frame.structure_bytes);
 }
@@ -146,8 +149,10 @@ void describe(Fields& io, TechniqueBench& technique) {
   io.newer("round_medians_ms", technique.round_medians_ms);
   io.derived("fps", technique.fps());
   io.derived("node_visits_per_ray", work.node_visits);
+  if (technique.has_leaf_counts()) io.derived("leaf_triangles_per_ray", work.leaf_triangles);
   io.derived("triangle_tests_per_ray", work.triangle_tests);
   io.derived("clusters_per_ray", work.clusters);
+  io.optional("kd_cost_ratio", technique.kd_cost_ratio);
   io.field("structure_bytes", technique.structure_bytes);
   io.field("prebuild_ms", technique.prebuild_ms);
   io.field("hit_mismatches", technique.hit_mismatches);

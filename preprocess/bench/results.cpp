@@ -95,6 +95,11 @@ WorkPerRay TechniqueBench::work() const {
   return work_per_ray(sum, rays_per_frame * frames.size());
 }
 
+bool TechniqueBench::has_leaf_counts() const {
+  const WorkPerRay counted = work();
+  return counted.leaf_triangles > 0 || counted.triangle_tests == 0;
+}
+
 std::string ModelBench::name() const { return std::filesystem::path(file).stem().string(); }
 
 const TechniqueBench* ModelBench::find(std::string_view id) const {

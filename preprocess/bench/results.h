@@ -50,6 +50,7 @@ struct TechniqueBench {
   std::uint64_t judged_frames = 0;   ///< compared with brute force
   std::uint64_t hit_mismatches = 0;  ///< in those, by what the technique promises (TechniqueInfo)
   std::string note;                  ///< of the technique after its last frame, or empty
+  double kd_cost_ratio = 0;  ///< TechniqueInfo's; 0 where there is no kd-tree or the file is older
 
   /// Of one phase, over the frames.
   double median_ms(double BenchFrame::*phase) const;
@@ -60,6 +61,8 @@ struct TechniqueBench {
   /// the fastest of the rounds can be trusted to. 0 for a single round.
   double round_spread() const;
   WorkPerRay work() const;
+  /// False for results of a program that did not count the triangles of leaves.
+  bool has_leaf_counts() const;
 };
 
 /// What `mdprep bake --report` says of a file.

@@ -54,6 +54,13 @@ auto work(double WorkPerRay::*count) {
   };
 }
 
+/// The same, and a dash where an older program did not count them.
+std::string leaf_triangles(const TechniqueRow& r, Place place) {
+  if (place != Place::kCsv && !r.technique.has_leaf_counts())
+    return place == Place::kPage ? "–" : "-";
+  return work(&WorkPerRay::leaf_triangles)(r, place);
+}
+
 const Listed kListed[] = {
     {"file", nullptr, nullptr, [](auto& r, Place) { return r.model.file; }},
     {nullptr, "model", nullptr, [](auto& r, Place) { return r.model.name(); }},
@@ -84,6 +91,7 @@ const Listed kListed[] = {
      [](auto& r, Place) { return fixed_text(100 * r.technique.round_spread(), 1) + " %"; }},
     {"fps", "fps", "fps", figure([](auto& r) { return r.technique.fps(); }, 1)},
     {"node_visits_per_ray", "visits/ray", "visits/ray", work(&WorkPerRay::node_visits)},
+    {"leaf_triangles_per_ray", "leaf tri./ray", "leaf tri./ray", leaf_triangles},
     {"triangle_tests_per_ray", "tests/ray", "tests/ray", work(&WorkPerRay::triangle_tests)},
     {"clusters_per_ray", "clusters/ray", "clusters/ray", work(&WorkPerRay::clusters)},
     {"structure_bytes", "memory", "memory",
@@ -127,8 +135,10 @@ Section detail_section(const BenchRun& run) {
       {Paragraph{
           "Medians over the frames in milliseconds; the middle half of the time to image over the "
           "animation; round spread: how far the second fastest round lay behind the fastest; work "
-          "per "
-          "ray; memory of the structures; all work done ahead for these keys; pixels that differ "
+          "per ray (boxes or kd steps; triangles of the leaves entered, before any is culled; "
+          "tests "
+          "evaluated after culling; clusters entered); memory of the structures; all work done "
+          "ahead for these keys; pixels that differ "
           "from brute force."}}};
   for (const ModelBench& model : run.models) {
     std::vector<TechniqueRow> rows;

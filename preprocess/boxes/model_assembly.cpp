@@ -18,11 +18,6 @@
 namespace mdk {
 namespace {
 
-/// Of a triangle test in units of a traversal step. Low, because a tile tests a leaf's triangles
-/// many at a time and knows those it tested in other leaves: shallow trees were faster on
-/// characters.
-constexpr float kTestCost = 0.4f;
-
 // How far the time spent on boxes is when the fuzzy ones and those of the clusters are there; the
 // boxes of poses come last.
 constexpr double kFuzzyBoxes = 0.8, kWorldBoxes = 0.9;
@@ -137,9 +132,8 @@ void build_fuzzy_trees(ModelStorage& model, std::span<const ClusterWork> work) {
   const ModelView view = model.view();
   std::vector<KdTree> trees(work.size());
   parallel_chunks(trees.size(), 1, [&](std::size_t i, std::size_t) {
-    KdBuildConfig config;
+    KdBuildConfig config = kTriangleTreeConfig;
     config.area = tree_weights(work[i].weights);
-    config.intersect_cost = kTestCost;
     trees[i] = build_kd_tree(
         view.cluster_fuzzy_boxes(static_cast<std::uint32_t>(i / clusters), i % clusters),
         model.clusters[i % clusters].first_triangle, config);

@@ -121,6 +121,7 @@ Json stats_row(const ModelView& model, const PlannedFrame& frame, const FrameSta
           {"hits", stats.hits},
           {"light_rays", stats.light_rays},
           {"node_visits_per_ray", work.node_visits},
+          {"leaf_triangles_per_ray", work.leaf_triangles},
           {"triangle_tests_per_ray", work.triangle_tests},
           {"clusters_per_ray", work.clusters}};
 }

@@ -17,7 +17,7 @@
 namespace mdk {
 namespace {
 
-constexpr std::uint64_t kMinRoom = std::uint64_t{16} << 20;  // to start threads and say a sentence
+constexpr std::uint64_t kMinRoom = std::uint64_t{16} << 20;   // to start threads and say a sentence
 constexpr std::uint64_t kLaterCode = std::uint64_t{4} << 20;  // of the program, not yet resident
 
 struct ProcessMemory {

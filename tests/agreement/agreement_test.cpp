@@ -112,7 +112,7 @@ TEST(Agreement, HitsAndCountsDoNotDependOnInstructionSetOrThreads) {
     const FrameStats expected = reference.render(request);
     EXPECT_GT(expected.hits, 0u);
     for (const std::string_view isa : available_isas())
-      for (const int threads : {1, 2}) {
+      for (const int threads : {1, 2, 5}) {
         limit_isa(isa);
         EXPECT_EQ(isa_in_use(), isa);
         const ThreadLimit limit(threads);
@@ -122,7 +122,17 @@ TEST(Agreement, HitsAndCountsDoNotDependOnInstructionSetOrThreads) {
             << technique.id << " " << isa << " " << threads;
         EXPECT_TRUE(std::ranges::equal(reference.pixels(), renderer.pixels()))
             << technique.id << " " << isa << " " << threads;
-        EXPECT_EQ(got.counters.triangle_tests > 0, true);
+        EXPECT_GT(got.counters.leaf_triangles, 0u);
+        EXPECT_GT(got.counters.triangle_tests, 0u);
+        if (technique.kind == TechniqueKind::kAdaptive) continue;  // it chooses by the clock
+        EXPECT_EQ(got.counters.node_visits, expected.counters.node_visits)
+            << technique.id << " " << isa << " " << threads;
+        EXPECT_EQ(got.counters.leaf_triangles, expected.counters.leaf_triangles)
+            << technique.id << " " << isa << " " << threads;
+        EXPECT_EQ(got.counters.triangle_tests, expected.counters.triangle_tests)
+            << technique.id << " " << isa << " " << threads;
+        EXPECT_EQ(got.counters.clusters_entered, expected.counters.clusters_entered)
+            << technique.id << " " << isa << " " << threads;
       }
   }
 }

@@ -280,6 +280,7 @@ TEST_F(Render, StatsHaveARowPerFrameWithTimesAndCounts) {
     EXPECT_EQ(row["rays"], 64 * 48);
     EXPECT_GT(row["hits"], 0);
     EXPECT_GT(row["node_visits_per_ray"], 0.0);
+    EXPECT_GT(row["leaf_triangles_per_ray"], 0.0);
     EXPECT_GT(row["triangle_tests_per_ray"], 0.0);
     EXPECT_GT(row["clusters_per_ray"], 0.0);
     const double sum = row["pose_ms"].get<double>() + row["update_ms"].get<double>() +

@@ -32,6 +32,22 @@ float between(float lo, float hi, std::mt19937& random) {
   return static_cast<float>(static_cast<double>(lo) * (1 - s) + static_cast<double>(hi) * s);
 }
 
+TEST(Rounding, IsToTheNeighbouringFloat) {
+  constexpr float kInf = std::numeric_limits<float>::infinity();
+  constexpr float kMax = std::numeric_limits<float>::max();
+  constexpr float kMin = std::numeric_limits<float>::denorm_min();
+  for (const float f : {0.0f, -0.0f, kMin, -kMin, 0x1p-126f, -0x1p-126f, 1.0f, -1.0f, 0x1.fffffep3f,
+                        kMax, -kMax, kInf})
+    EXPECT_EQ(next_below(f), std::nextafter(f, -kInf)) << f;
+  EXPECT_EQ(round_down(1 + 1e-12), 1);
+  EXPECT_EQ(round_up(1 + 1e-12), 1 + 0x1p-23f);
+  EXPECT_EQ(round_down(-1e-60), -kMin);
+  EXPECT_EQ(round_up(1e-60), kMin);
+  EXPECT_EQ(round_up(0), 0);
+  EXPECT_EQ(round_down(1e300), kMax);
+  EXPECT_EQ(round_up(-1e300), -kMax);
+}
+
 TEST(QuantizedBox, HoldsTheBoxItIsMadeOfAndStaysInItsFrame) {
   std::printf("seed %u\n", kSeed);
   std::mt19937 random(kSeed);

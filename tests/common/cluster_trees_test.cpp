@@ -4,6 +4,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <limits>
+#include <random>
+
 namespace mdk {
 namespace {
 
@@ -68,6 +71,44 @@ TEST(ClusterTrees, ValidateSeesWhatIsWrong) {
   EXPECT_THAT(blocks_verdict([](auto& blocks) { blocks[0].triangle[0] = 45; }),
               HasSubstr("not there"));
   EXPECT_THAT(blocks_verdict([](auto& blocks) { blocks[0].count = 0; }), HasSubstr("wrong number"));
+}
+
+/// Every corner of every triangle mapped for itself.
+Aabb local_box(const Affine3d& map, const Triangle& triangle, const std::vector<Vec3f>& positions) {
+  Aabbd box;
+  for (const std::uint32_t v : triangle.v) {
+    const Vec3d p = map.point(to_double(positions[v]));
+    if (!(length(p) < std::numeric_limits<float>::max())) return {{0, 0, 0}, {0, 0, 0}};
+    box.extend(p);
+  }
+  return round_outward(box);
+}
+
+TEST(LocalBoxes, AreThoseOfEachTriangleAlone) {
+  ModelStorage storage = two_clusters();
+  for (std::uint32_t i = 0; i < 45; ++i) storage.triangles[i] = {{i, (i * 7 + 3) % 47, 46 - i}};
+  const ModelView model = storage.view();
+  LocalBoxes boxes(model);
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> entry(-2, 2);
+  for (int round = 0; round < 20; ++round) {
+    std::vector<Vec3f> positions;
+    for (int i = 0; i < 47; ++i)
+      positions.push_back(to_float(Vec3d{entry(random), entry(random), entry(random)}));
+    if (round % 4 == 1) positions[5].y = std::numeric_limits<float>::quiet_NaN();
+    if (round % 4 == 2) positions[9].z = std::numeric_limits<float>::infinity();
+    if (round % 4 == 3) positions[11].x = -std::numeric_limits<float>::max();
+    for (std::size_t c = 0; c < 2; ++c) {
+      Affine3d map;
+      for (auto& row : map.m)
+        for (double& m : row) m = entry(random);
+      const std::span<const Aabb> found = boxes.find(c, map, positions.data());
+      ASSERT_EQ(found.size(), model.clusters[c].triangle_count);
+      for (std::size_t i = 0; i < found.size(); ++i)
+        EXPECT_EQ(found[i],
+                  local_box(map, model.triangles[model.clusters[c].first_triangle + i], positions));
+    }
+  }
 }
 
 }  // namespace

@@ -44,11 +44,10 @@ double mean_world_area(const ModelView& model, std::uint32_t cluster) {
 }
 
 double mean_tree_cost(const ModelView& model, std::uint32_t cluster) {
-  const KdBuildConfig config;
   double sum = 0, keys = 0;
   for (std::uint32_t s = 0; s < model.segment_count(); ++s) {
     const double weight = model.segments[s].last_key - model.segments[s].first_key + 1;
-    sum += weight * sah_cost(model.tree_view(model.segment_trees(s)[cluster]), config);
+    sum += weight * sah_cost(model.tree_view(model.segment_trees(s)[cluster]), kTriangleTreeConfig);
     keys += weight;
   }
   return sum / keys;

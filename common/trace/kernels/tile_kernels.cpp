@@ -20,13 +20,13 @@ struct Counting {
   TraceCounters& counters;
   void nodes(std::uint64_t n) const { counters.node_visits += n; }
   void clusters(std::uint64_t n) const { counters.clusters_entered += n; }
-  void setups(std::uint64_t n) const { counters.triangle_setups += n; }
+  void candidates(std::uint64_t n) const { counters.leaf_triangles += n; }
   void tests(std::uint64_t n) const { counters.triangle_tests += n; }
 };
 struct NoCounting {
   void nodes(std::uint64_t) const {}
   void clusters(std::uint64_t) const {}
-  void setups(std::uint64_t) const {}
+  void candidates(std::uint64_t) const {}
   void tests(std::uint64_t) const {}
 };
 
@@ -43,7 +43,7 @@ class BlockTester {
 
   /// A block no one keeps: only what may be hit in this tile is projected.
   void test(const TriangleBlock& block, ProjectedBlock& projected) {
-    counter_.setups(block.count);
+    counter_.candidates(block.count);
     Projector projector(block, *tile_.pixel_from_world, positions_, projected);
     projector.run([&](std::size_t i) { return image_.may_hit(projected, i); });
     finish(block, projected, projected.live);
@@ -57,7 +57,7 @@ class BlockTester {
       Projector projector(block, *tile_.pixel_from_world, positions_, out);
       projector.run([&](std::size_t) { return hn::Eq(hn::Zero(d), hn::Zero(d)); });
     });
-    counter_.setups(block.count);
+    counter_.candidates(block.count);
     if (projected.live == 0) return;
     std::uint32_t mask = 0;
     for (std::size_t i = 0; i < kBlockTriangles; i += hn::Lanes(d))

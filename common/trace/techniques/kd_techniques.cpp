@@ -49,7 +49,7 @@ class StaticKdTechnique final : public StructureTechnique {
     if (&trees == &between_keys_) trees.clear();  // only the current one: their number has no end
     std::vector<Aabb> boxes(model().triangle_count());
     triangle_boxes(mesh, boxes);
-    trees.emplace(moment, build_kd_tree(boxes));
+    trees.emplace(moment, build_kd_tree(boxes, 0, kTriangleTreeConfig));
   }
   void update(const PosedMesh& mesh) override {
     mesh.positions();

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "common/structures/kd_tree.h"
 #include "common/trace/technique.h"
 #include "formats/mdk/writer.h"
 #include "tests/commands/baked_sample.h"
@@ -45,19 +46,24 @@ TEST_F(Bench, JsonHasTheFieldsOfTheContractAndNoMismatch) {
   EXPECT_EQ(model["keys"], kSampleKeys);
   ASSERT_EQ(model["techniques"].size() + 1, technique_table().size());
   for (const Json& row : model["techniques"]) {
-    EXPECT_THAT(names_of(row),
-                testing::IsSupersetOf(
-                    {"id", "pose_ms", "update_ms", "trace_ms", "shade_ms", "time_to_image_ms",
-                     "fps", "node_visits_per_ray", "triangle_tests_per_ray", "clusters_per_ray",
-                     "structure_bytes", "prebuild_ms", "hit_mismatches", "frames"}));
+    EXPECT_THAT(
+        names_of(row),
+        testing::IsSupersetOf(
+            {"id", "pose_ms", "update_ms", "trace_ms", "shade_ms", "time_to_image_ms", "fps",
+             "node_visits_per_ray", "leaf_triangles_per_ray", "triangle_tests_per_ray",
+             "clusters_per_ray", "structure_bytes", "prebuild_ms", "hit_mismatches", "frames"}));
     EXPECT_EQ(row["round_medians_ms"].size(), 2u);
     EXPECT_NE(row["id"], "brute-force");
     EXPECT_GT(row["time_to_image_ms"], 0.0);
     if (find_technique(row["id"].get<std::string>()).kind != TechniqueKind::kPeer) {
       EXPECT_EQ(row["hit_mismatches"], 0) << row["id"];
       EXPECT_GT(row["node_visits_per_ray"], 0.0) << row["id"];
+      EXPECT_GT(row["leaf_triangles_per_ray"], 0.0) << row["id"];
       EXPECT_GT(row["triangle_tests_per_ray"], 0.0) << row["id"];
     }
+    const bool is_kd = row["id"] == "fuzzy-kdtree" || row["id"] == "static-kdtree";
+    EXPECT_EQ(row.contains("kd_cost_ratio"), is_kd) << row["id"];
+    if (is_kd) EXPECT_NEAR(row["kd_cost_ratio"], kKdTestCost, 1e-6) << "alike for both";
     EXPECT_GT(row["structure_bytes"], 0) << row["id"];
     ASSERT_EQ(row["frames"].size(), 5u);
     EXPECT_THAT(names_of(row["frames"][0]),
@@ -75,13 +81,14 @@ TEST_F(Bench, CountsAreTheSameEveryTime) {
     std::vector<double> found;
     for (const Json& row : report["models"][0]["techniques"])
       if (find_technique(row["id"].get<std::string>()).kind != TechniqueKind::kAdaptive)
-        for (const char* name :
-             {"node_visits_per_ray", "triangle_tests_per_ray", "clusters_per_ray"})
+        for (const char* name : {"node_visits_per_ray", "leaf_triangles_per_ray",
+                                 "triangle_tests_per_ray", "clusters_per_ray"})
           found.push_back(row[name]);
     for (const Json& row : report["models"][0]["techniques"])
       if (find_technique(row["id"].get<std::string>()).kind != TechniqueKind::kAdaptive)
         for (const Json& frame : row["frames"])
-          for (const char* name : {"node_visits", "triangle_tests", "clusters_entered"})
+          for (const char* name :
+               {"node_visits", "triangle_setups", "triangle_tests", "clusters_entered"})
             found.push_back(frame[name]);
     return found;
   };

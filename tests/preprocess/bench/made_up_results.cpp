@@ -9,6 +9,7 @@ TechniqueBench made_up_technique(const std::string& id, double factor) {
   technique.structure_bytes = 2048;
   technique.prebuild_ms = 7;
   technique.judged_frames = 2;
+  if (id.ends_with("kdtree")) technique.kd_cost_ratio = 0.25;
   for (const double ms : {3.0, 1.0, 2.0}) {
     BenchFrame frame;
     frame.key = static_cast<std::uint32_t>(technique.frames.size()) * 5;
@@ -17,6 +18,7 @@ TechniqueBench made_up_technique(const std::string& id, double factor) {
     frame.trace_ms = 10 * ms * factor;
     frame.shade_ms = 4 * factor;
     frame.counters.node_visits = 300;
+    frame.counters.leaf_triangles = 40;
     frame.counters.triangle_tests = 200;
     frame.counters.clusters_entered = 50;
     frame.structure_bytes = 1024 * (technique.frames.size() + 1);

@@ -55,8 +55,37 @@ TEST(Report, PutsThePapersRatiosBesideOurs) {
   const Table table = block<Table>(section(make_report(made_up_results()), "gfw06-table-1"));
   ASSERT_EQ(table.rows.size(), 1u) << "only one model has both kd-trees";
   EXPECT_THAT(table.rows[0],
-              ElementsAre("hand", "16,000", "11", "4", "3.000", "3.000", "**1.00**", "1.76", "2.00",
-                          "2.00", "**1.00**", "1.15", "31.4", "25.2", "**1.25**", "1.64"));
+              ElementsAre("hand", "16,000", "11", "4", "3.000", "3.000", "**1.00**", "1.76",
+                          "0.400", "0.400", "**1.00**", "1.15", "2.00", "2.00", "**1.00**", "24.00",
+                          "30.00", "**1.25**", "31.4", "25.2", "**1.25**", "1.64"));
+  EXPECT_THAT(table.text, HasSubstr("a triangle test at 0.25 of a traversal step"));
+}
+
+TEST(Report, ShowsThePapersOwnTable) {
+  const Section table1 = section(make_report(made_up_results()), "gfw06-table-1");
+  const Table paper = std::get<Table>(table1.blocks.back());
+  ASSERT_EQ(paper.rows.size(), 5u);
+  EXPECT_THAT(paper.rows[2], ElementsAre("cow", "5,804", "204", "20", "634,173", "946,558", "1.49",
+                                         "0.92", "3.68", "4.0", "19.21", "12.49", "1.53"));
+}
+
+TEST(Report, SaysWhereKdTreesWereNotBuiltAlikeAndWhatWasNotCounted) {
+  BenchResults results = made_up_results();
+  ModelBench& hand = results.runs[0].models[0];
+  hand.file = "out/real-cow.mdk";
+  const auto table_1 = [&] { return block<Table>(section(make_report(results), "gfw06-table-1")); };
+  hand.techniques[2].kd_cost_ratio = 1.5;
+  EXPECT_THAT(table_1().text, HasSubstr("not all trees were built with the same constants"));
+  for (TechniqueBench& technique : hand.techniques) {
+    technique.kd_cost_ratio = 0;
+    for (BenchFrame& frame : technique.frames) frame.counters.leaf_triangles = 0;
+  }
+  EXPECT_THAT(table_1().text, HasSubstr("of an older program"));
+  const std::vector<std::string> row = table_1().rows[0];
+  EXPECT_EQ(row[7], "1.49") << "the paper's COW";
+  EXPECT_THAT(std::vector(row.begin() + 8, row.begin() + 12), ElementsAre("–", "–", "–", "4.0"));
+  const Section details = section(make_report(results), "details");
+  EXPECT_THAT(block<Table>(details).rows[0], testing::Contains("–"));
 }
 
 TEST(Report, SaysWhereFuzzyStructuresOvertake) {

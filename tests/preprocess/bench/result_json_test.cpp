@@ -30,7 +30,11 @@ TEST(ResultJson, TheFirstRunStandsAtTheTopWithMediansForScripts) {
   EXPECT_EQ(row["time_to_image_ms"], 26.5);
   EXPECT_DOUBLE_EQ(row["fps"], 1000 / 26.5);
   EXPECT_EQ(row["node_visits_per_ray"], 3.0);
+  EXPECT_EQ(row["leaf_triangles_per_ray"], 0.4);
+  EXPECT_EQ(row["frames"][0]["triangle_setups"], 40);
   EXPECT_EQ(row["triangle_tests_per_ray"], 2.0);
+  EXPECT_FALSE(row.contains("kd_cost_ratio")) << "not a kd-tree";
+  EXPECT_EQ(model["techniques"][1]["kd_cost_ratio"], 0.25);
   EXPECT_EQ(row["clusters_per_ray"], 0.5);
   EXPECT_EQ(row["structure_bytes"], 2048);
   EXPECT_EQ(row["prebuild_ms"], 7.0);
@@ -42,6 +46,22 @@ TEST(ResultJson, TheFirstRunStandsAtTheTopWithMediansForScripts) {
 TEST(ResultJson, ReadsBackWhatItWrote) {
   const std::string text = results_json(made_up_results());
   EXPECT_EQ(results_json(parse_results(text, "a.json")), text);
+}
+
+TEST(ResultJson, OfOlderProgramsMayLackCountsOfLeavesAndConstants) {
+  auto json = nlohmann::json::parse(results_json(made_up_results()));
+  for (auto& technique : json["models"][0]["techniques"]) {
+    technique.erase("kd_cost_ratio");
+    for (auto& frame : technique["frames"]) frame.erase("triangle_setups");
+  }
+  const BenchResults results = parse_results(json.dump(), "a.json");
+  const TechniqueBench& kd = *results.runs[0].models[0].find("fuzzy-kdtree");
+  EXPECT_FALSE(kd.has_leaf_counts());
+  EXPECT_EQ(kd.kd_cost_ratio, 0);
+  EXPECT_EQ(kd.work().triangle_tests, 2.0);
+  const auto again = nlohmann::json::parse(results_json(results));
+  EXPECT_FALSE(again["models"][0]["techniques"][1].contains("leaf_triangles_per_ray"));
+  EXPECT_TRUE(again["models"][1]["techniques"][0].contains("leaf_triangles_per_ray"));
 }
 
 TEST(ResultJson, RefusesWhatIsDamagedAndSaysWhere) {

@@ -34,6 +34,8 @@ TEST(TechniqueBench, MediansAreOverFramesAndWorkIsPerRay) {
   EXPECT_EQ(technique.time_to_image_ms().median, 26.5);
   EXPECT_EQ(technique.time_to_image_ms().low, 21.0);
   EXPECT_EQ(technique.work().node_visits, 3.0);
+  EXPECT_EQ(technique.work().leaf_triangles, 0.4);
+  EXPECT_TRUE(technique.has_leaf_counts());
   EXPECT_EQ(technique.work().triangle_tests, 2.0);
   EXPECT_EQ(technique.work().clusters, 0.5);
 }
