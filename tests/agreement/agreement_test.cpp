@@ -138,7 +138,10 @@ TEST(Agreement, HitsAndCountsDoNotDependOnInstructionSetOrThreads) {
 }
 
 TEST(Agreement, CountsDependOnTheFramesBeforeWhereTheTableSaysSoOnly) {
-  const DecomposeResult baked = bake(test::flying_boxes(30, 12));
+  DecomposeOptions options;
+  options.rest_key = 0;  // where all are together, so that their hierarchy wears out
+  SilentProgress silent;
+  const DecomposeResult baked = decompose(test::flying_boxes(30, 12), options, silent);
   const ModelView model = baked.model.view();
   FrameRequest request{.at = at_key(0),
                        .camera = fit_camera(model.bounds, 1.5),

@@ -10,7 +10,9 @@
 #include "common/trace/renderer.h"
 #include "common/trace/shading.h"
 #include "formats/mdk/mdk_file.h"
+#include "formats/mdk/writer.h"
 #include "tests/viewer/mdview_gui.h"
+#include "tests/viewer/waving_bar.h"
 
 namespace mdk::test {
 namespace {
@@ -146,6 +148,7 @@ TEST_F(MdviewPages, ABoxOfAPickMovesWithItsCluster) {
 }
 
 TEST_F(MdviewPages, TreeCellsAreThoseOfTheChosenDepth) {
+  write_mdk(waving_bar(129).view(), folder_.file("bar.mdk"));  // whose trees have a depth
   look_at_tab("clusters");
   const auto at_depth = [&](double across) {
     const auto session = start_on_bar({"--tab", "clusters", "--screenshot", "window.png"});

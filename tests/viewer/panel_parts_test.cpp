@@ -133,7 +133,7 @@ TEST(StateReport, IsOneLineOfJsonThatTellsAbsentFromZero) {
   state.frames.last = FrameReport{};
   state.frames.last->stats.trace_ms = 2;
   state.frames.last->stats.shade_ms = 1;
-  state.frames.last_work = WorkReport{0, 4, {8, 2, 0, 6}};
+  state.frames.last_work = WorkReport{0, 4, {8, 0, 2, 6}};
   const auto full = nlohmann::json::parse(state_json(state, {}));
   EXPECT_TRUE(full["error"].is_null());
   EXPECT_EQ(full["last_frame"]["time_to_image_ms"], 3);

@@ -46,6 +46,8 @@ struct BoxGrowthPlan {
   double min_stage_gain = 0.01;  ///< share of the cost that a stage must save to go on
 
   std::uint32_t target() const { return clusters != 0 ? clusters : limit; }
+  /// What one more cluster costs that decides nothing: all of it where their number is given.
+  double settled_cost() const { return clusters != 0 ? kClusterCost : 0; }
 };
 
 GrowthStep describe(const BoxProblem& problem, const BoxClustering& clustering) {
@@ -77,8 +79,9 @@ BoxClustering filled_up(const BoxProblem& problem, BoxClustering clustering, std
 BoxClustering cut_and_relaxed(const BoxProblem& problem, const BoxClustering& clustering,
                               const BoxGrowthPlan& plan, double min_gain) {
   const std::uint32_t room = plan.target() - std::min(plan.target(), clustering.cluster_count);
-  BoxClustering next = make_splits(problem, clustering, find_splits(problem, clustering),
-                                   std::min(room, clustering.cluster_count), min_gain);
+  BoxClustering next =
+      make_splits(problem, clustering, find_splits(problem, clustering),
+                  std::min(room, clustering.cluster_count), min_gain - plan.settled_cost());
   if (next.cluster_count == clustering.cluster_count) return clustering;
   return relax_boxes(problem, std::move(next), plan.relax);
 }
@@ -138,7 +141,8 @@ Growth grow_boxes(const BoxProblem& problem, std::vector<std::uint32_t> start,
   };
   record();
   const auto advance = [&](BoxClustering next) {  // whether it pays to go on
-    const double gain = state.cost - next.cost;
+    const double more = static_cast<double>(next.cluster_count) - state.cluster_count;
+    const double gain = state.cost - next.cost + more * plan.settled_cost();
     if (!(gain > 0)) return false;
     const bool is_last = gain < plan.min_stage_gain * state.cost;
     state = std::move(next);
