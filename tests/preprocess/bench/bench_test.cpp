@@ -63,7 +63,9 @@ TEST_F(Bench, JsonHasTheFieldsOfTheContractAndNoMismatch) {
     }
     const bool is_kd = row["id"] == "fuzzy-kdtree" || row["id"] == "static-kdtree";
     EXPECT_EQ(row.contains("kd_cost_ratio"), is_kd) << row["id"];
-    if (is_kd) EXPECT_NEAR(row["kd_cost_ratio"], kKdTestCost, 1e-6) << "alike for both";
+    if (is_kd) {
+      EXPECT_NEAR(row["kd_cost_ratio"], kKdTestCost, 1e-6) << "alike for both";
+    }
     EXPECT_GT(row["structure_bytes"], 0) << row["id"];
     ASSERT_EQ(row["frames"].size(), 5u);
     EXPECT_THAT(names_of(row["frames"][0]),
