@@ -195,8 +195,10 @@ $(nproc) cores, ${cpu:-unknown processor}.
 - *paper*: \`${paper[*]}\`, the method of GFW06.
 - *ours*: the defaults, with one time segment (\`${one_segment[*]}\`); *auto*: the defaults as they are.
 - *cost*: expected work of a ray that meets the model ([method.md](../method.md)).
+  A single cluster whose maps come near singular between two keys can make most of it: of real-cow by the paper's method it does,
+  which bounds keys only and does not know of it. Such a row tells nothing of the clustering.
 - *W*: area in the world of all fuzzy boxes, in areas of the mesh's box, median over keys; *tight*: the same for
-  the boxes of the present triangles, the floor.
+  the boxes of the current triangles, the floor.
 - *steps*, *candidates*, *tests*: kd-tree steps, triangles of the leaves entered (which GFW06 counts) and triangle tests after
   culling of \`fuzzy-kdtree\` over those of \`static-kdtree\` at the same six keys, 1024x1024, default camera, trees built with
   the same constants. They are counts, and the same on every run.
