@@ -46,7 +46,7 @@ source_of() {
 real_source() { if [[ -f $1.obj && -f $1.pc2 ]]; then echo "$1.obj $1.pc2"; fi; }
 
 one_segment=(--segments 1)
-paper=(--decompose motion --stop 1 --refine off "${one_segment[@]}")
+paper=(--decompose motion --stop 1 --refine off --between-keys off "${one_segment[@]}")
 
 # bake_and_trace MODEL KIND OPTIONS…: figures to $work/MODEL.KIND.*
 bake_and_trace() {

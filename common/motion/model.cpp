@@ -36,6 +36,7 @@ KeyInterval locate_time(const ModelView& model, std::uint32_t clip_index, double
   // itself.
   if (s <= 0.0f) return at_key(clip.first_key + k0);
   if (s >= 1.0f) return at_key(clip.first_key + k1);
+  if (!model.holds_between_keys) return at_key(clip.first_key + (s > 0.5f ? k1 : k0));
   return {clip.first_key + k0, clip.first_key + k1, s};
 }
 

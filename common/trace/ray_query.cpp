@@ -121,6 +121,11 @@ struct RayQuery::State {
                                          std::to_string(at.key0) + " and " +
                                          std::to_string(at.key1));
     }
+    if (at.key0 != at.key1 && !model.holds_between_keys) {
+      throw Error(ErrorCode::kUsage,
+                  "a ray's time lies between keys, where the model's boxes do not hold: ask at a "
+                  "key, or bake it with --between-keys on");
+    }
     return {segments[segment_of(model, at)],
             poses.at(at),
             boxes.at(at),

@@ -83,6 +83,8 @@ struct ModelBench {
   std::uint32_t triangles = 0, keys = 0, clusters = 0;
   std::optional<BakeFacts> bake;
   std::vector<TechniqueBench> techniques;
+  bool between_keys = true;   ///< whether its boxes hold there
+  double predicted_cost = 0;  ///< see predicted_cost() of the model; 0: not known
 
   /// The file's name without folder and ending.
   std::string name() const;

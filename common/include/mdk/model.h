@@ -58,7 +58,8 @@ class Model {
   /// Holds the mesh at every time of a clip. Cost: O(keys of the clip).
   Aabb clip_bounds(std::uint32_t clip) const;
 
-  /// The interval of a clip that holds `seconds`, clamped to the clip. Cost: O(log keys). Throws
+  /// The interval of a clip that holds `seconds`, clamped to the clip; the nearest key where the
+  /// model's boxes hold at keys only (baked with --between-keys off). Cost: O(log keys). Throws
   /// Error (kUsage) for a time that is not finite, too.
   KeyInterval locate_time(std::uint32_t clip, double seconds) const;
   /// Exactly at a key.

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "preprocess/cluster/common_moves.h"
@@ -68,5 +69,16 @@ BoxClustering dissolve_clusters(const BoxProblem& problem, BoxClustering cluster
 /// from where it is hardly needed to where it is missed. There may be fewer clusters afterwards.
 BoxClustering exchange_clusters(const BoxProblem& problem, const BoxClustering& clustering,
                                 std::uint32_t count);
+
+// rigid_parts.cpp
+
+/// Triangles of the connected parts that one map per row holds still, all parts that the same maps
+/// hold still together. Cost: O(rows * vertices).
+std::vector<std::vector<std::uint32_t>> find_rigid_parts(const MovingMesh& mesh);
+
+/// Each part that several clusters share moved into the one of them in which its boxes are
+/// smallest, fitted again.
+BoxClustering with_whole_parts(const BoxProblem& problem, BoxClustering clustering,
+                               std::span<const std::vector<std::uint32_t>> parts);
 
 }  // namespace mdk
