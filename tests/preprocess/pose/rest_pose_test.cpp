@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -111,11 +112,15 @@ TEST(RestPose, EveryKeyOfALongSequenceIsACandidateWhateverTheBudget) {
   for (const std::uint32_t middle : {3u, 37u, 58u}) {
     const PoseSequence sequence = bumps_around(middle, 60, 1);
     const double unit = pose_unit(sequence);
-    for (const double budget : {1.0, 1e5, 1e9}) {
-      const std::vector<std::uint32_t> keys = best_rest_keys(
-          sequence, whole_members(sequence), unit, {.count = 3, .max_multiply_adds = budget});
+    const auto best_keys = [&](double budget) {
+      return best_rest_keys(sequence, whole_members(sequence), unit,
+                            {.count = 3, .max_multiply_adds = budget});
+    };
+    EXPECT_EQ(best_keys(1e9)[0], middle);
+    for (const double budget : {1.0, 1e5}) {  // fewer vertices and targets, not fewer candidates
+      const std::vector<std::uint32_t> keys = best_keys(budget);
       ASSERT_EQ(keys.size(), 3u);
-      EXPECT_EQ(keys[0], middle) << "budget " << budget;
+      EXPECT_TRUE(std::ranges::find(keys, middle) != keys.end()) << middle << " at " << budget;
     }
   }
 }
