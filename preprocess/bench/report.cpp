@@ -52,8 +52,8 @@ struct Contest {
   const ModelBench& model;
   Technique fuzzy = fastest_of(model, {"fuzzy-bvh", "fuzzy-kdtree"});
   Technique embree = fastest_of(model, {"embree", "embree-refit", "embree-low", "embree-medium"});
-  Technique other =
-      fastest_of(model, {"rebuild-bvh", "refit-bvh", "tsah-refit", "hybrid-bvh", "decomp-refit"});
+  Technique other = fastest_of(model, {"rebuild-bvh", "refit-bvh", "tsah-refit", "hybrid-bvh",
+                                       "rotate-bvh", "decomp-refit"});
   Technique fuzzy_bvh = model.find("fuzzy-bvh");
   Technique rebuilt = model.find("rebuild-bvh");
 };
@@ -260,6 +260,43 @@ Section crossover(const BenchRun& run) {
   return section;
 }
 
+/// Each model a point: what the cost expects of a ray that meets it, and how long one that hits it
+/// took.
+Section predicted_cost_section(const BenchRun& run) {
+  Chart chart{.title = "fuzzy-bvh",
+              .x_label = "predicted cost",
+              .y_label = "trace time, ns per ray that hits",
+              .x_scale = Scale::kLog,
+              .y_scale = Scale::kLog,
+              .labels = Labels::kAtEnd,
+              .marks = Marks::kDots};
+  std::vector<double> predicted, measured;
+  for (const ModelBench& model : run.models) {
+    const TechniqueBench* fuzzy = model.find("fuzzy-bvh");
+    if (fuzzy == nullptr || !(model.predicted_cost > 0)) continue;
+    const double hits = fuzzy->hits_per_frame();
+    if (!(hits > 0)) continue;
+    predicted.push_back(model.predicted_cost);
+    measured.push_back(1e6 * fuzzy->median_ms(&BenchFrame::trace_ms) / hits);
+    chart.series.push_back(
+        {model.name(), numbered_style(chart.series.size()), {{predicted.back(), measured.back()}}});
+  }
+  std::vector<Chart> charts;
+  std::string caption =
+      "What the decomposition expects of a ray that meets the model (docs/method.md, cost) against "
+      "the median trace time of `fuzzy-bvh`, divided by the rays that hit.";
+  if (predicted.size() > 2)
+    caption += " Rank correlation of the two over these models: " +
+               fixed_text(rank_correlation(predicted, measured), 2) + ".";
+  if (!chart.series.empty()) charts.push_back(std::move(chart));
+  return figure_section({.id = "predicted-cost",
+                         .caption = caption,
+                         .charts = std::move(charts),
+                         .has_legend = false},
+                        "Predicted against measured",
+                        "Needs `fuzzy-bvh` measured, by a program that counts hits.");
+}
+
 /// Bytes after each key that was measured. Only the trees of `static-kdtree` go on adding up past
 /// those: by their mean.
 std::vector<ChartPoint> memory_over_keys(const TechniqueBench& technique, std::uint32_t keys) {
@@ -397,10 +434,27 @@ std::vector<std::pair<std::string, std::string>> facts_of(const BenchResults& re
 
 std::string ratio_text(double a, double b) { return b > 0 ? fixed_text(a / b, 2) : "–"; }
 
+std::string strong_ratio(double a, double b) {
+  const std::string ratio = ratio_text(a, b);
+  return b > 0 ? "**" + ratio + "**" : ratio;
+}
+
+std::string variant_of(const std::string& name) {
+  for (const char* variant : {"paper", "bones", "space", "first", "level"})
+    if (name.ends_with(std::string("-") + variant)) return variant;
+  return {};
+}
+
+std::string base_name(const std::string& name) {
+  const std::string variant = variant_of(name);
+  return variant.empty() ? name : name.substr(0, name.size() - variant.size() - 1);
+}
+
 std::vector<const ModelBench*> whole_models(const BenchRun& run) {
   std::vector<const ModelBench*> models;
   for (const ModelBench& model : run.models)
-    if (model.name().find("-split") == std::string::npos) models.push_back(&model);
+    if (model.name().find("-split") == std::string::npos && variant_of(model.name()).empty())
+      models.push_back(&model);
   return models;
 }
 
@@ -442,7 +496,9 @@ Report make_report(const BenchResults& results) {
   const BenchRun& run = results.runs.front();
   Report report{"Ray tracing animated meshes: every technique, measured", facts_of(results), {}};
   report.sections.push_back(summary(results));
-  for (Section& section : paper_sections(run)) report.sections.push_back(std::move(section));
+  for (const auto& of_paper : {gfw06_sections, lo09_sections})
+    for (Section& section : of_paper(run)) report.sections.push_back(std::move(section));
+  report.sections.push_back(predicted_cost_section(run));
   report.sections.push_back(crossover(run));
   report.sections.push_back(memory(run));
   report.sections.push_back(bakes(run));

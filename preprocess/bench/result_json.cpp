@@ -136,6 +136,7 @@ void describe(Fields& io, BenchFrame& frame) {
   io.field("triangle_tests", frame.counters.triangle_tests);
   io.newer("triangle_setups", frame.counters.leaf_triangles);  // its name in files
   io.field("clusters_entered", frame.counters.clusters_entered);
+  io.newer("hits", frame.hits);
   io.field("structure_bytes", frame.structure_bytes);
 }
 
