@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -14,10 +15,14 @@
 
 namespace mdk {
 
-/// What box clustering looks at.
+struct TriangleBlocks;
+
+/// What box clustering looks at. Not for use from several threads at once.
 struct BoxProblem {
   MovingMesh mesh;
   BoxMeasure measure;
+  /// The mesh as find_alternatives() takes it, once it was asked.
+  mutable std::shared_ptr<const TriangleBlocks> blocks = nullptr;
 };
 
 /// K clusters, fitted. It follows from the problem and the assignment alone.

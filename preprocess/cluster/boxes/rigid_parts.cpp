@@ -81,15 +81,10 @@ std::vector<std::uint32_t> some_of(std::span<const std::uint32_t> triangles) {
 
 /// Whether these maps, from table coordinates, hold all points still.
 bool holds_still(const ClusterPoints& points, std::span<const Affine3d> from_table) {
-  PointBoxes boxes;
-  boxes.reset(points.stride);
-  const std::vector<Affine3d> maps = from_centered(points, from_table);
-  for (std::uint32_t row = 0; row < points.row_count; ++row) {
-    extend_boxes(to_float(maps[row]), points.row(row), points.stride, boxes.row());
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      for (std::size_t i = 0; i < points.vertex_count; ++i)
-        if (!(boxes.hi[axis][i] - boxes.lo[axis][i] <= kStill)) return false;
-  }
+  const PointBoxes boxes = mapped_boxes(points, from_centered(points, from_table));
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    for (std::size_t i = 0; i < points.vertex_count; ++i)
+      if (!(boxes.hi[axis][i] - boxes.lo[axis][i] <= kStill)) return false;
   return true;
 }
 
