@@ -74,6 +74,9 @@ Report make_report(const BenchResults& results);
 std::vector<Section> gfw06_sections(const BenchRun& run);
 std::vector<Section> lo09_sections(const BenchRun& run);
 
+/// What the cost of each model expects beside how long its rays took.
+Section predicted_cost_section(const BenchRun& run);
+
 /// Every figure of every technique, a table for each model.
 Section detail_section(const BenchRun& run);
 

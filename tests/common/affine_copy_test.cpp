@@ -81,8 +81,8 @@ TEST(AffineCopy, IsWhatTheShadingModeShows) {
   Renderer renderer(model, "brute-force");
   // From above, on the quarter that only vertex 3 reaches into: at key 1 the second triangle
   // slopes down to it, in its cluster's motion alone it lies flat.
-  FrameRequest request{.at = at_key(1), .width = 64, .height = 64};
-  request.camera = fit_camera(model.bounds, 1);
+  FrameRequest request{
+      .at = at_key(1), .camera = fit_camera(model.bounds, 1), .width = 64, .height = 64};
   renderer.render(request);
   const std::vector<std::uint32_t> real(renderer.pixels().begin(), renderer.pixels().end());
   request.shading = ShadingMode::kAffine;
