@@ -132,6 +132,36 @@ TEST(RigidParts, NeverBecomeSeveralClusters) {
   }
 }
 
+TEST(RigidParts, AreNotCutWhereClustersOfManyPartsMeet) {
+  // A snake of balls: far more parts than clusters pay, so that each cluster has several, and boxes
+  // alone would put its ends anywhere.
+  constexpr std::uint32_t kLinks = 60;
+  Mesh mesh;
+  std::vector<std::uint32_t> link_of_vertex, link_of_triangle;
+  const auto center = [](std::uint32_t link) { return Vec3d{1.2 * link, 0, 0}; };
+  for (std::uint32_t link = 0; link < kLinks; ++link) {
+    mesh = joined(mesh, ball(6, center(link), false));
+    link_of_vertex.resize(mesh.vertices.size(), link);
+    link_of_triangle.resize(mesh.triangles.size(), link);
+  }
+  const PoseSequence sequence = make_sequence(mesh, 24, [&](std::uint32_t k, std::uint32_t i) {
+    const std::uint32_t link = link_of_vertex[i];
+    const double phase = 0.12 * link + 0.5 * k;
+    const Vec3d rest = center(link), moved = rest + Vec3d{0, 8 * std::sin(phase), 0};
+    return rigid_motion({0, 0, 1}, std::atan(0.8 * std::cos(phase)), {})
+               .point(mesh.vertices[i] - rest) +
+           moved;
+  });
+  const Growth growth = grown(sequence, {});
+  EXPECT_GT(growth.cluster_count, 3u);
+  EXPECT_LT(growth.cluster_count, kLinks);
+  std::vector<std::set<std::uint32_t>> clusters(kLinks);
+  for (std::size_t t = 0; t < sequence.triangles.size(); ++t)
+    clusters[link_of_triangle[t]].insert(growth.cluster_of_triangle[t]);
+  for (std::uint32_t link = 0; link < kLinks; ++link)
+    EXPECT_EQ(clusters[link].size(), 1u) << "link " << link;
+}
+
 TEST(RigidParts, ComeTogetherInTheClusterThatFollowsThem) {
   std::vector<std::uint32_t> part_of_triangle;
   const PoseSequence sequence = balls_and_a_sheet(2, false, part_of_triangle);
