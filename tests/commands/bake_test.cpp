@@ -156,6 +156,12 @@ TEST_F(Bake, BoxesOfKeysOnlyAreSaidInEveryReportAndTracedAtKeys) {
     return read_text(folder_.file(name));
   };
   const std::string nearest = picture({"--frames", "3"}, "key.png");
+  const std::string stats = folder_.file("stats.json");
+  picture({"--time", "0.11", "--stats", stats}, "stats.png");
+  const Json rendered = Json::parse(read_text(stats));
+  EXPECT_EQ(rendered["between_keys"], false);
+  EXPECT_EQ(rendered["frames"][0]["key"], 3);
+  EXPECT_NEAR(rendered["frames"][0]["time"].get<double>(), 0.1, 1e-6) << "of the key shown";
   EXPECT_EQ(picture({"--time", "0.11"}, "time.png"), nearest);
   EXPECT_NE(picture({"--time", "0.4"}, "later.png"), nearest);
 }
