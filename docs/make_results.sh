@@ -68,6 +68,7 @@ if [[ $quick ]]; then
   further=(hand hand-split1)
   lit=(hand)
   further_options=(--techniques "$few")
+  lit_options=(--techniques "${few/fuzzy-kdtree,/}" --shading lit --ao 16)
 fi
 
 if [[ $only ]]; then
