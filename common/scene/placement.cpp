@@ -312,6 +312,11 @@ double wrapped_time(double phase, double seconds, ClipWrap wrap) {
   return 0;
 }
 
+Affine3f key_map(const PathKey& key) {
+  return to_float(composed(mdk::to_double(key.translation), rotation_of(key),
+                           mdk::to_double(key.scale)));
+}
+
 Stage::Stage(const SceneView& scene, std::vector<Model> models)
     : scene_(scene), models_(std::move(models)) {
   if (const std::string fault = role_fault(scene_, models_); !fault.empty())

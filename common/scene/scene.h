@@ -201,6 +201,9 @@ class Stage {
 /// clip_time() for a clip of D seconds: in [0, D], 0 for a phase that is not finite.
 double wrapped_time(double phase, double seconds, ClipWrap wrap);
 
+/// What a key does, composed in double and rounded once.
+Affine3f key_map(const PathKey& key);
+
 inline Vec3f map_point(const Affine3d& model_from_world, const Vec3f& p) {
   return to_float(model_from_world.point(to_double(p)));
 }
