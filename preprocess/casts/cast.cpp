@@ -31,10 +31,6 @@ Error cast_error(const std::string& file, const CastPlace& place, const std::str
                              std::to_string(place.column) + ": " + sentence);
 }
 
-std::string beside_cast(const std::string& cast, const std::string& name) {
-  return (fs::path(cast).parent_path() / name).string();
-}
-
 SceneBuilder::SceneBuilder(const std::string& output)
     : folder_(absolute_path(output).parent_path().string()) {}
 
@@ -46,6 +42,15 @@ std::uint32_t SceneBuilder::model(const std::string& path) {
   by_path_.emplace(whole, index);
   scene_.model_count = index + 1;
   return index;
+}
+
+std::uint32_t SceneBuilder::model_of_cast(const std::string& cast, const CastPlace& place,
+                                          const std::string& name) {
+  try {
+    return model((fs::path(cast).parent_path() / name).string());
+  } catch (const Error& error) {
+    throw Error(error.code(), cast_error(cast, place, error.what()).what());
+  }
 }
 
 std::vector<std::string> SceneBuilder::model_paths() const {

@@ -26,6 +26,7 @@ struct CastOptions {
   std::string clip;                 ///< of those that name none; empty: each model's first
   std::optional<double> fps;        ///< of trajectories: frames a second
   UpAxis up = UpAxis::kY;
+  double scale = 1;              ///< of those that say none
   std::optional<double> stride;  ///< metres a second that the clip walks at speed 1
 };
 
@@ -36,9 +37,6 @@ struct CastPlace {
 
 /// "crowd.csv: line 3, column 7: no such model".
 Error cast_error(const std::string& file, const CastPlace& place, const std::string& sentence);
-
-/// Reads a file that names others by paths from its own folder.
-std::string beside_cast(const std::string& cast, const std::string& name);
 
 /// One instance, before its clip is known by number.
 struct Actor {
@@ -59,6 +57,9 @@ class SceneBuilder {
 
   /// Opens a model, or finds it among those that are open. Throws Error: kIo, kBadInput.
   std::uint32_t model(const std::string& path);
+  /// One that a cast names, at a place in it: errors name that place, too.
+  std::uint32_t model_of_cast(const std::string& cast, const CastPlace& place,
+                              const std::string& name);
   const ModelView& view(std::uint32_t model) const { return opened_[model].file->model(); }
   const std::string& model_path(std::uint32_t model) const { return opened_[model].path; }
   std::uint32_t model_count() const { return static_cast<std::uint32_t>(opened_.size()); }

@@ -159,7 +159,7 @@ class Reader {
       return models_[scene_.instance_count() % models_.size()];
     }
     if (c->text != last_model_name_) {
-      last_model_ = scene_.model(beside_cast(file_, c->text));
+      last_model_ = scene_.model_of_cast(file_, c->place, c->text);
       last_model_name_ = c->text;
     }
     return last_model_;
@@ -177,9 +177,9 @@ class Reader {
   void read_line() {
     Actor actor;
     actor.model = model();
-    actor.map =
-        upright_map({number("x", 0), number("y", 0), number("z", 0)},
-                    number("heading", 0) * std::numbers::pi / 180, number("scale", 1), options_.up);
+    actor.map = upright_map({number("x", 0), number("y", 0), number("z", 0)},
+                            number("heading", 0) * std::numbers::pi / 180,
+                            number("scale", options_.scale), options_.up);
     if (const Cell* const c = cell("clip"))
       actor.clip = c->text;
     else if (!options_.clip.empty())

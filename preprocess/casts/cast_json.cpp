@@ -229,7 +229,7 @@ class Reader {
       const Value* const name = item.find("file");
       if (name == nullptr || name->kind != Value::Kind::kText || name->text.empty())
         refuse(item.place, "a model needs a \"file\": the name of a .mdk");
-      models_.push_back(scene_.model(beside_cast(file_, name->text)));
+      models_.push_back(scene_.model_of_cast(file_, name->place, name->text));
     }
   }
 

@@ -115,7 +115,7 @@ void scatter(const ScatterOptions& scatter, const CastOptions& options, SceneBui
                       "has no clip \"" + options.clip + "\"; leave --clip out, or name another");
     if (moving.empty()) moving.push_back(0);
   }
-  const double spacing = scatter.spacing.value_or(width > 0 ? 1.1 * width : 1);
+  const double spacing = scatter.spacing.value_or(width > 0 ? 1.1 * width * options.scale : 1);
 
   std::vector<Spot> spots;
   switch (scatter.pattern) {
@@ -138,6 +138,7 @@ void scatter(const ScatterOptions& scatter, const CastOptions& options, SceneBui
     const std::uint32_t clip = clips[which][random() % clips[which].size()];
     const Clip& played = view.clips[clip];
     const double ground =
+        options.scale *
         static_cast<double>(options.up == UpAxis::kY ? view.bounds.lo.y : view.bounds.lo.z);
     // The ground's y runs away from the viewer, who stands at +z where y is up, at -y where z is.
     const Vec3d at = options.up == UpAxis::kY ? Vec3d{spot.x, spot.z - ground, -spot.y}
@@ -145,7 +146,7 @@ void scatter(const ScatterOptions& scatter, const CastOptions& options, SceneBui
     Actor actor;
     actor.model = models[which];
     actor.clip = played.name;
-    actor.map = upright_map(at, spot.heading, 1, options.up);
+    actor.map = upright_map(at, spot.heading, options.scale, options.up);
     actor.start = share() * view.clip_seconds(played);
     if (const std::string fault = scene.add(actor); !fault.empty())
       throw Error(ErrorCode::kUsage, "--spacing: " + fault);

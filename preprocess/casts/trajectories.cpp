@@ -143,10 +143,11 @@ class Reader {
     for (std::uint32_t c = 0; c < view.clips.size(); ++c)
       if (view.clips[c].name == options_.clip) clip = c;
     const std::string& name = scene_.model_path(model);
-    if (const auto known = stride_speed(view, clip, options_.up)) {
+    if (const auto in_model = stride_speed(view, clip, options_.up)) {
+      const double known = *in_model * options_.scale;
       notes_.push_back(name + ": the clip " + mdk::quoted(view.clips[clip].name) + " walks at " +
-                       rounded(*known) + " m/s, by its feet");
-      return *known;
+                       rounded(known) + " m/s, by its feet");
+      return known;
     }
     notes_.push_back(name + ": its feet do not tell how fast it walks; taken as " +
                      rounded(kWalkingSpeed) + " m/s (--stride says better)");
@@ -237,6 +238,7 @@ class Reader {
     actor.model = models_[number % models_.size()];
     if (!options_.clip.empty()) actor.clip = options_.clip;
     actor.id = track.id;
+    actor.map = upright_map({}, 0, options_.scale, options_.up);
     const double stride = strides_[number % models_.size()];
     actor.speed = seconds > 0 ? way / seconds / stride : 0;
     // Everyone is at another step; the golden ratio spreads them evenly.

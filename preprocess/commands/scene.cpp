@@ -61,6 +61,8 @@ void run_scene(const SceneArguments& arguments, CommandContext& context) {
   } else {
     for (const std::string& input : arguments.inputs) read_cast(input, arguments, scene, notes);
   }
+  if (scene.instance_count() == 0)
+    throw bad_input(arguments.inputs.front(), "has no instances; a scene needs at least one");
   const SceneStorage& made = scene.finish();
   const std::vector<SceneModelFile> models = scene.model_files();
   const std::uint64_t bytes = write_mds(made.view(), models, arguments.output,
@@ -75,7 +77,8 @@ void run_scene(const SceneArguments& arguments, CommandContext& context) {
   for (const std::string& note : notes) std::cerr << "mdprep: note: " << note << "\n";
   std::cerr << "mdprep: " << arguments.output << ": " << grouped_text(made.instances.size())
             << " instances of " << models.size() << (models.size() == 1 ? " model, " : " models, ")
-            << grouped_text(made.paths.size()) << " paths, " << bytes_text(bytes) << "\n";
+            << grouped_text(made.paths.size()) << (made.paths.size() == 1 ? " path, " : " paths, ")
+            << bytes_text(bytes) << "\n";
 }
 
 }  // namespace
@@ -116,6 +119,9 @@ void add_scene_command(Command& command) {
   command.add_value("--up", "y|z",
                     "Which axis points up: headings turn about it (default: y, as in glTF).", "y",
                     arguments->cast.up, one_of<UpAxis>({{"y", UpAxis::kY}, {"z", UpAxis::kZ}}));
+  command.add_value("--scale", "S", "Scale of those that say none (default: 1).", "1",
+                    arguments->cast.scale,
+                    real_where([](double x) { return x >= 1e-9 && x <= 1e9; }, "a number above 0"));
   command.add_value(
       "--stride", "SPEED",
       "How fast the clip walks, metres a second: clips of trajectories run faster or\n"
