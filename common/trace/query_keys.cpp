@@ -15,6 +15,7 @@ const Vec3f* KeyPoses::key(std::uint32_t key) const {
   std::call_once(slot.once, [&] {
     slot.positions.resize(model_->vertex_count);
     decode_pose(*model_, key, {0, model_->vertex_count}, slot.positions);
+    decoded_.fetch_add(slot.positions.size() * sizeof(Vec3f), std::memory_order_relaxed);
   });
   return slot.positions.data();
 }

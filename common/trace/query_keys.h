@@ -2,6 +2,7 @@
 // world boxes side by side. Both serve any moment between two keys.
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -21,6 +22,8 @@ class KeyPoses {
 
   /// Positions of all vertices at that time. Cost: O(1), but decoding the first time.
   VertexSource at(const KeyInterval& at) const;
+  /// What was decoded so far.
+  std::size_t bytes() const { return decoded_.load(std::memory_order_relaxed); }
 
  private:
   struct Slot {
@@ -31,6 +34,7 @@ class KeyPoses {
   const Vec3f* key(std::uint32_t key) const;
 
   const ModelView* model_;
+  mutable std::atomic<std::size_t> decoded_ = 0;
   std::unique_ptr<Slot[]> slots_;  ///< by key; none where nothing is decoded
 };
 
@@ -44,6 +48,7 @@ class BoxColumns {
   /// Boxes that hold the clusters at that time but for rounding, for which a BoxRay gives way.
   /// Valid while this lives.
   MovingBoxes at(const KeyInterval& at) const;
+  std::size_t bytes() const { return columns_.size() * sizeof(float); }
 
  private:
   std::size_t clusters_, stride_;

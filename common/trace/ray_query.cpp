@@ -88,4 +88,6 @@ void RayQuery::any_hits(const QueryRay* rays, const KeyInterval* times, std::uin
   });
 }
 
+std::size_t RayQuery::bytes() const { return state_->tracer.bytes(); }
+
 }  // namespace mdk

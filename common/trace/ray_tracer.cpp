@@ -106,6 +106,12 @@ bool RayTracer::has_time(const KeyInterval& at) const {
          model.clips[clip_of_key(model, at.key1)].first_key != at.key1;
 }
 
+std::size_t RayTracer::bytes() const {
+  std::size_t sum = data_->poses.bytes() + data_->boxes.bytes();
+  for (const SegmentTrees& segment : data_->segments) sum += segment.trees.bytes();
+  return sum;
+}
+
 QueryHit RayTracer::trace(const QueryRay& ray, const KeyInterval& time, RayAim aim) const {
   const ScaledRay scaled(ray);
   if (!scaled.usable) return {};

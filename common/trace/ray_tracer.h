@@ -29,6 +29,9 @@ class RayTracer {
   /// keys it needs are there.
   QueryHit trace(const QueryRay& ray, const KeyInterval& time, RayAim aim) const;
 
+  /// What it holds now.
+  std::size_t bytes() const;
+
  private:
   struct Data;
   std::unique_ptr<Data> data_;
