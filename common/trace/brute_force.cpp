@@ -22,7 +22,7 @@ QueryHit brute_force_closest_hit(const PosedMesh& mesh, const QueryRay& ray) {
     block.push(t, model.triangles[t]);
     if (block.count < kBlockTriangles && t + 1 < model.triangle_count()) continue;
     block.pad();
-    intersect(scaled.ray, {}, {{}, {&block, 1}, vertices}, RayAim::kClosest, hit);
+    test_blocks(scaled.ray, {&block, 1}, vertices, hit);
     block = {};
   }
   return scaled.in_callers_lengths(hit);

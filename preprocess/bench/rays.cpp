@@ -41,7 +41,16 @@ std::vector<KeyInterval> intervals_of(const ModelView& model) {
   return intervals;
 }
 
-/// At `share` of [0, 1) of all clips, one after another.
+/// Up to sixteen in the middle: about half a second.
+std::vector<KeyInterval> short_while(const ModelView& model) {
+  constexpr std::size_t kIntervals = 16;
+  const std::vector<KeyInterval> all = intervals_of(model);
+  const std::size_t count = std::min(kIntervals, all.size()), first = (all.size() - count) / 2;
+  return {all.begin() + static_cast<std::ptrdiff_t>(first),
+          all.begin() + static_cast<std::ptrdiff_t>(first + count)};
+}
+
+/// At `share` of [0, 1) of the intervals, one after another.
 KeyInterval time_at(const std::vector<KeyInterval>& intervals, double share) {
   const double place = share * static_cast<double>(intervals.size());
   KeyInterval at = intervals[std::min(static_cast<std::size_t>(place), intervals.size() - 1)];
@@ -55,11 +64,11 @@ Aabb box_at(const ModelView& model, const KeyInterval& at) {
   return {a.lo + (b.lo - a.lo) * at.s, a.hi + (b.hi - a.hi) * at.s};
 }
 
-/// A lidar of 32 beams, two diagonals away, that turns ten times while all clips play.
+/// A lidar of 32 beams, two diagonals away, that turns ten times in a short while.
 RayList spin(const ModelView& model, std::uint32_t count) {
   constexpr std::uint32_t kBeams = 32;
   constexpr double kTurns = 10;
-  const std::vector<KeyInterval> intervals = intervals_of(model);
+  const std::vector<KeyInterval> intervals = short_while(model);
   const float size = diagonal(model.bounds);
   const Vec3f eye = model.bounds.center() + Vec3f{1.2f, 0.3f, 1.57f} * size;
   RayList list;
@@ -76,10 +85,11 @@ RayList spin(const ModelView& model, std::uint32_t count) {
   return list;
 }
 
-/// From the same place, ten pictures of the model's box one after another, read out row by row.
+/// From the same place, ten pictures of the model's box one after another in a short while,
+/// read out row by row.
 RayList scan(const ModelView& model, std::uint32_t count) {
   constexpr std::uint32_t kPictures = 10;
-  const std::vector<KeyInterval> intervals = intervals_of(model);
+  const std::vector<KeyInterval> intervals = short_while(model);
   const float size = diagonal(model.bounds);
   const Vec3f eye = model.bounds.center() + Vec3f{1.2f, 0.3f, 1.57f} * size;
   const std::uint32_t side = std::max(1u, static_cast<std::uint32_t>(std::sqrt(count / kPictures)));
@@ -170,7 +180,7 @@ QueryHit as_hit(bool is_hit) { return is_hit ? QueryHit{0, 0, 0, 0} : QueryHit{}
 
 Trace trace_by(const RayQuery& query, const RayRun& run) {
   if (run.at_one_time) {
-    const QueryMoment moment = query.prepare(list.times[0]);
+    const QueryMoment moment = query.prepare(run.list.times[0]);
     return [&query, &run, moment](std::vector<QueryHit>& hits) {
       const RayList& list = run.list;
       parallel_chunks(hits.size(), kRaysPerChunk, [&](std::size_t begin, std::size_t end) {
