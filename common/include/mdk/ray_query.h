@@ -82,6 +82,9 @@ class RayQuery {
   void any_hits(const QueryRay* rays, const KeyInterval* times, std::uint8_t* hits,
                 std::size_t count) const;
 
+  /// What the query holds now, in bytes: hierarchies, and what it has kept of keys and moments.
+  std::size_t bytes() const;
+
  private:
   struct State;
   std::shared_ptr<const State> state_;

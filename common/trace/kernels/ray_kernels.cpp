@@ -10,6 +10,15 @@
 //
 // The last clause does nothing for triangles of sane shape. For slivers, whose weights are all
 // rounding, it keeps hits where any box around the triangle shows them.
+//
+// In float, triangles are rejected before that. With the ray along an axis of the image (x, y), the
+// origin at (0, 0), an edge's weight is a_x b_y - a_y b_x. Let g be no less than the distance of any
+// point of the model from the origin, m the largest |x|, |y| of the corners. A hit has a point of the
+// triangle within 2^-20 g of the ray, so within sqrt(2) 2^-20 g of (0, 0) along x and along y, which
+// moves a weight by 1.42 * 2^-18 g m; rounding the corners to 6 * 2^-24 g moves it by 1.5 * 2^-20 g m,
+// and the products round by 2^-21 g m: in all less than R m + R^2, R = 1.25 * 2^-17 g. So there is no
+// hit where one weight is past R m + R^2 and another below its negative; nor where all corners lie
+// beyond the hit so far, or before t_min, by more than R.
 #include "common/trace/kernels/ray_kernels.h"
 
 #include <algorithm>
@@ -21,6 +30,7 @@
 #include <hwy/highway.h>
 // after highway.h
 #include "common/trace/kernels/walk-inl.h"
+#include "common/trace/query_keys.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace mdk {
@@ -30,6 +40,8 @@ namespace rays {
 using DoubleTag = hn::CappedTag<double, kBvhWidth>;
 using DoubleVec = hn::Vec<DoubleTag>;
 using DoublePoints = Points<DoubleTag>;
+
+// --- the test in double ---
 
 struct Weight {
   DoubleVec value;
@@ -46,66 +58,38 @@ HWY_INLINE Weight edge_weight(const DoublePoints& a, const DoublePoints& b, cons
 /// About twenty roundings of 2^-53 each, relative to the sizes of all factors.
 constexpr double kRounding = 0x1p-48;
 
-/// A ray on its way down one tree (walk-inl.h).
-class RayInTree {
- public:
-  RayInTree(const BoxRay& ray, RayAim aim, const RayHit& hit) : ray_(ray), aim_(aim), hit_(hit) {}
-
-  HWY_INLINE std::uint32_t enter(const WideBvhNode& node, float (&order)[kBvhWidth]) const {
-    const hn::CappedTag<float, kBvhWidth> d;
-    std::uint32_t entered = 0;
-    for (std::size_t first = 0; first < kBvhWidth; first += hn::Lanes(d)) {
-      Slabs slabs(d, ray_.t_begin, hit_.t);
-      for (std::size_t axis = 0; axis < 3; ++axis)
-        slabs.cut(d, ray_, axis, hn::Load(d, node.bounds[2 * axis] + first),
-                  hn::Load(d, node.bounds[2 * axis + 1] + first));
-      hn::Store(slabs.near, d, order + first);
-      entered |= slabs.entered(d) << first;
-    }
-    return entered & ((1u << node.count) - 1);
-  }
-  bool is_past(float order) const { return order > hit_.t; }
-  bool finished() const { return aim_ == RayAim::kAny && hit_.triangle != kNoHit; }
-
- private:
-  const BoxRay& ray_;
-  RayAim aim_;
-  const RayHit& hit_;
-};
-
-/// One ray against blocks of triangles.
+/// One ray against triangles.
 class RayTester {
  public:
-  RayTester(const WorldRay& ray, const VertexSource& vertices, RayHit& hit)
+  RayTester(const WorldRay& ray, RayHit& hit)
       : ray_(ray),
-        vertices_(vertices),
         hit_(hit),
         direction_square_(dot(ray.direction, ray.direction)),
         rounding_(kRounding * std::max({std::abs(ray.direction.x), std::abs(ray.direction.y),
                                         std::abs(ray.direction.z)})) {}
 
-  void test(const TriangleBlock& block) {
-    const std::size_t lanes = hn::Lanes(DoubleTag());
-    for (std::size_t first = 0; first < block.count; first += lanes) test_lanes(block, first);
+  /// `count` triangles, not more than a vector holds; corner k of triangle i is vertex corner[k][i].
+  /// Places up to the lanes of a vector must be vertices, too.
+  void test(const std::uint32_t* const (&corner)[3], const std::uint32_t* triangle,
+            std::size_t count, const VertexSource& vertices) {
+    const auto points = [&](const std::uint32_t* index) {
+      const DoubleTag d;
+      alignas(64) double x[kBvhWidth], y[kBvhWidth], z[kBvhWidth];
+      for (std::size_t i = 0; i < hn::Lanes(d); ++i) {
+        const Vec3d v = to_double(vertices.position(index[i])) - ray_.origin;
+        x[i] = v.x;
+        y[i] = v.y;
+        z[i] = v.z;
+      }
+      return DoublePoints{hn::Load(d, x), hn::Load(d, y), hn::Load(d, z)};
+    };
+    test_lanes(points(corner[0]), points(corner[1]), points(corner[2]), triangle, count);
   }
 
  private:
-  HWY_INLINE DoublePoints corner(const std::uint32_t* index) const {
+  HWY_INLINE void test_lanes(const DoublePoints& a, const DoublePoints& b, const DoublePoints& c,
+                             const std::uint32_t* triangles, std::size_t count) {
     const DoubleTag d;
-    alignas(64) double x[kBvhWidth], y[kBvhWidth], z[kBvhWidth];
-    for (std::size_t i = 0; i < hn::Lanes(d); ++i) {
-      const Vec3d v = to_double(vertices_.position(index[i])) - ray_.origin;
-      x[i] = v.x;
-      y[i] = v.y;
-      z[i] = v.z;
-    }
-    return {hn::Load(d, x), hn::Load(d, y), hn::Load(d, z)};
-  }
-
-  HWY_INLINE void test_lanes(const TriangleBlock& block, std::size_t first) {
-    const DoubleTag d;
-    const DoublePoints a = corner(block.corner[0] + first), b = corner(block.corner[1] + first),
-                       c = corner(block.corner[2] + first);
     const DoublePoints direction = broadcast(d, ray_.direction);
     const auto rounding = hn::Set(d, rounding_);
     const Weight wa = edge_weight(b, c, direction, rounding),
@@ -129,8 +113,7 @@ class RayTester {
     const auto close = hn::Le(dot(off, off), hn::Mul(dot(p, p), hn::Set(d, 0x1p-40)));
     // Written so that a corner that is not a number fails it.
     const auto hit = hn::And(inside, hn::And(close, hn::Gt(total, zero)));
-    std::uint32_t lanes = mask_bits(d, hit);
-    if (first + hn::Lanes(d) > block.count) lanes &= (1u << (block.count - first)) - 1;
+    std::uint32_t lanes = mask_bits(d, hit) & ((1u << count) - 1);
     if (lanes == 0) return;
 
     alignas(64) double depth[kBvhWidth], bary1[kBvhWidth], bary2[kBvhWidth];
@@ -140,7 +123,7 @@ class RayTester {
     for (; lanes != 0; lanes &= lanes - 1) {
       const auto i = static_cast<std::size_t>(__builtin_ctz(lanes));
       const auto at = static_cast<float>(depth[i]);
-      const std::uint32_t triangle = block.triangle[first + i];
+      const std::uint32_t triangle = triangles[i];
       const bool is_closer = at < hit_.t || (at == hit_.t && triangle < hit_.triangle);
       if (!(at > ray_.t_min) || !is_closer) continue;
       hit_ = {at, triangle, static_cast<float>(bary1[i]), static_cast<float>(bary2[i])};
@@ -148,54 +131,414 @@ class RayTester {
   }
 
   const WorldRay& ray_;
-  const VertexSource& vertices_;
   RayHit& hit_;
   double direction_square_, rounding_;
 };
 
-std::size_t EnterBoxes(const BoxRay& ray, const MovingBoxes& boxes, float t_max,
-                       EnteredBox* entered) {
-  const hn::CappedTag<float, kMovingBoxLanes> d;
-  const auto s = hn::Set(d, boxes.s);
-  const auto row_at = [&](std::size_t row, std::size_t first) {
-    const auto from = hn::LoadU(d, boxes.from + row * boxes.stride + first);
-    const auto to = hn::LoadU(d, boxes.to + row * boxes.stride + first);
-    return hn::Add(from, hn::Mul(hn::Sub(to, from), s));
-  };
-  alignas(64) float enter[kMovingBoxLanes];
-  std::size_t count = 0;
-  for (std::size_t first = 0; first < boxes.count; first += hn::Lanes(d)) {
-    Slabs slabs(d, ray.t_begin, t_max);
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      slabs.cut(d, ray, axis, row_at(2 * axis, first), row_at(2 * axis + 1, first));
-    std::uint32_t lanes = slabs.entered(d);
-    if (boxes.count - first < hn::Lanes(d)) lanes &= (1u << (boxes.count - first)) - 1;
-    if (lanes == 0) continue;
-    hn::Store(slabs.near, d, enter);
-    for (; lanes != 0; lanes &= lanes - 1) {
-      const auto lane = static_cast<std::uint32_t>(__builtin_ctz(lanes));
-      std::size_t place = count++;
-      for (; place > 0 && entered[place - 1].enter > enter[lane]; --place)
-        entered[place] = entered[place - 1];
-      entered[place] = {static_cast<std::uint32_t>(first) + lane, enter[lane]};
+// --- boxes ---
+
+/// A ray against boxes of one basis, as make_box_ray() has it, its numbers in every lane: per axis
+/// the plane that it meets first, and last.
+template <class D>
+class LaneRay {
+ public:
+  HWY_INLINE LaneRay(D d, const BoxRay& ray) : t_begin_(hn::Set(d, ray.t_begin)) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const bool rises = ray.inverse[axis] >= 0;
+      near_row_[axis] = static_cast<std::uint32_t>(2 * axis + (rises ? 0 : 1));
+      near_[axis] = hn::Set(d, rises ? ray.origin_for_low[axis] : ray.origin_for_high[axis]);
+      far_[axis] = hn::Set(d, rises ? ray.origin_for_high[axis] : ray.origin_for_low[axis]);
+      inverse_[axis] = hn::Set(d, ray.inverse[axis]);
     }
   }
-  return count;
+
+  /// Bits of the boxes entered before t_max; where, into `order`. row(i) is a vector of planes.
+  template <class Row>
+  HWY_INLINE std::uint32_t enter(D d, float t_max, float* order, const Row& row) const {
+    auto near = t_begin_, far = hn::Set(d, t_max);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      near = hn::Max(near, hn::Mul(hn::Sub(row(near_row_[axis]), near_[axis]), inverse_[axis]));
+      far = hn::Min(far,
+                    hn::Mul(hn::Sub(row(near_row_[axis] ^ 1u), far_[axis]), inverse_[axis]));
+    }
+    hn::Store(near, d, order);
+    return mask_bits(d, hn::Le(near, far));
+  }
+
+ private:
+  hn::Vec<D> near_[3], far_[3], inverse_[3], t_begin_;
+  std::uint32_t near_row_[3];
+};
+
+/// A ray on its way down one cluster's tree (walk-inl.h).
+class RayInTree {
+ public:
+  HWY_INLINE RayInTree(const BoxRay& ray, RayAim aim, const RayHit& hit)
+      : ray_(Tag(), ray), aim_(aim), hit_(hit) {}
+
+  HWY_INLINE std::uint32_t enter(const WideBvhNode& node, float (&order)[kBvhWidth]) const {
+    const Tag d;
+    std::uint32_t entered = 0;
+    for (std::size_t first = 0; first < kBvhWidth; first += hn::Lanes(d))
+      entered |= ray_.enter(d, hit_.t, order + first,
+                            [&](std::uint32_t row) {
+                              return hn::Load(d, node.bounds[row] + first);
+                            })
+                 << first;
+    return entered & ((1u << node.count) - 1);
+  }
+  bool is_past(float order) const { return order > hit_.t; }
+  bool finished() const { return aim_ == RayAim::kAny && hit_.triangle != kNoHit; }
+
+ private:
+  using Tag = hn::CappedTag<float, kBvhWidth>;
+  LaneRay<Tag> ray_;
+  RayAim aim_;
+  const RayHit& hit_;
+};
+
+// --- blocks ---
+
+/// Sixteen numbers, of which lanes pick some.
+class Sixteen {
+ public:
+  static constexpr std::size_t kParts = 16 / hn::MaxLanes(FloatTag());
+
+  HWY_INLINE void set(std::size_t part, FloatVec values) {
+    if constexpr (kParts <= 2) {
+      part_[part] = values;
+    } else {
+      hn::Store(values, FloatTag(), stored_ + part * hn::Lanes(FloatTag()));
+    }
+  }
+  using Indices = hn::Vec<hn::RebindToSigned<FloatTag>>;
+  HWY_INLINE FloatVec pick(Indices index) const {
+    const FloatTag d;
+    const hn::RebindToSigned<FloatTag> di;
+    if constexpr (kParts == 1) {
+      return hn::TableLookupLanes(part_[0], hn::IndicesFromVec(d, index));
+    } else if constexpr (kParts == 2) {
+      const auto seven = hn::Set(di, 7);
+      const auto place = hn::IndicesFromVec(d, hn::And(index, seven));
+      return hn::IfThenElse(hn::RebindMask(d, hn::Gt(index, seven)),
+                            hn::TableLookupLanes(part_[1], place),
+                            hn::TableLookupLanes(part_[0], place));
+    } else {
+      return hn::GatherIndex(d, stored_, index);
+    }
+  }
+
+ private:
+  FloatVec part_[kParts <= 2 ? kParts : 1];  // in use where a vector can look them up
+  alignas(64) float stored_[kParts <= 2 ? 1 : 16];
+};
+
+#if HWY_TARGET != HWY_SCALAR
+/// Four vertices at the source's time; a lane more than a vertex has is read.
+HWY_INLINE Points<hn::FixedTag<float, 4>> pose_four(const std::uint32_t* vertex,
+                                                    const VertexSource& source) {
+  const hn::FixedTag<float, 4> d;
+  const auto s = hn::Set(d, source.s);
+  hn::Vec<hn::FixedTag<float, 4>> row[4];
+  for (std::size_t i = 0; i < 4; ++i) {
+    const auto from = hn::LoadU(d, &source.from[vertex[i]].x);
+    const auto to = hn::LoadU(d, &source.to[vertex[i]].x);
+    row[i] = hn::Add(from, hn::Mul(hn::Sub(to, from), s));
+  }
+  const auto xy02 = hn::InterleaveLower(d, row[0], row[2]),
+             xy13 = hn::InterleaveLower(d, row[1], row[3]),
+             z02 = hn::InterleaveUpper(d, row[0], row[2]),
+             z13 = hn::InterleaveUpper(d, row[1], row[3]);
+  return {hn::InterleaveLower(d, xy02, xy13), hn::InterleaveUpper(d, xy02, xy13),
+          hn::InterleaveLower(d, z02, z13)};
+}
+#endif
+
+/// As many vertices as a vector holds.
+template <class D>
+HWY_INLINE Points<D> pose(D d, const std::uint32_t* vertex, const VertexSource& source) {
+#if HWY_TARGET == HWY_SCALAR
+  const Vec3f p = source.position(vertex[0]);
+  return {hn::Set(d, p.x), hn::Set(d, p.y), hn::Set(d, p.z)};
+#else
+  if constexpr (hn::MaxLanes(d) == 4) {
+    return pose_four(vertex, source);
+  } else {
+    const hn::Half<D> half;
+    const auto low = pose(half, vertex, source),
+               high = pose(half, vertex + hn::Lanes(half), source);
+    return {hn::Combine(d, high.x, low.x), hn::Combine(d, high.y, low.y),
+            hn::Combine(d, high.z, low.z)};
+  }
+#endif
 }
 
-void Intersect(const WorldRay& ray, const BoxRay& local, const RayTarget& target, RayAim aim,
-               RayHit& hit) {
-  RayTester tester(ray, target.vertices, hit);
-  if (target.nodes.empty()) {
-    for (const TriangleBlock& block : target.blocks) tester.test(block);
-    return;
+/// One ray on its way through a model.
+class RayInModel {
+ public:
+  RayInModel(const RayModel& model, const WorldRay& ray, const KeyInterval& at, RayAim aim,
+             RayHit& hit)
+      : model_(model), ray_(ray), at_(at), aim_(aim), hit_(hit), tester_(ray, hit) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      origin_[k] = static_cast<float>(ray.origin[k]);
+      direction_[k] = static_cast<float>(ray.direction[k]);
+    }
+    reach_ = std::abs(model.center.x - origin_[0]) + std::abs(model.center.y - origin_[1]) +
+             std::abs(model.center.z - origin_[2]) + model.diagonal;
+    slack_ = reach_ * (1.25f * 0x1p-19f);
   }
-  const RayInTree rays(local, aim, hit);
-  walk_bvh(target.nodes, rays, [&](std::uint32_t leaf) { tester.test(target.blocks[leaf]); });
+
+  void trace(std::uint32_t segment) {
+    trees_ = model_.trees + std::size_t{segment} * model_.clusters;
+    if (!enter_model()) return;
+    set_filter();
+    walk_top();
+  }
+
+ private:
+  bool finished() const { return aim_ == RayAim::kAny && hit_.triangle != kNoHit; }
+
+  /// Prepares the ray for the world's boxes; whether it enters the model's at its time.
+  bool enter_model() {
+    const Aabb &from = model_.key_boxes[at_.key0], &to = model_.key_boxes[at_.key1];
+    float near = std::min(0.0f, ray_.t_min), far = hit_.t;
+    world_.t_begin = near;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const float d = direction_[k];
+      const float inverse = 1 / (std::abs(d) < kShortest ? std::copysign(kShortest, d) : d);
+      const float lo = from.lo[k] + (to.lo[k] - from.lo[k]) * at_.s;
+      const float hi = from.hi[k] + (to.hi[k] - from.hi[k]) * at_.s;
+      // No box of this time reaches farther.
+      const float size = std::abs(origin_[k]) + std::max(std::abs(lo), std::abs(hi));
+      const float slack = slack_ + size * 0x1p-19f;
+      world_.inverse[k] = inverse;
+      world_.origin_for_low[k] = origin_[k] + slack;
+      world_.origin_for_high[k] = origin_[k] - slack;
+      const float a = (lo - world_.origin_for_low[k]) * inverse,
+                  b = (hi - world_.origin_for_high[k]) * inverse;
+      near = std::max(near, std::min(a, b));
+      far = std::min(far, std::max(a, b));
+    }
+    return near <= far;
+  }
+
+  void set_filter() {
+    std::size_t along = 0;
+    for (std::size_t k = 1; k < 3; ++k)
+      if (std::abs(direction_[k]) > std::abs(direction_[along])) along = k;
+    const std::size_t x = (along + 1) % 3, y = (along + 2) % 3;
+    const float inverse = 1 / direction_[along];
+    for (auto& row : image_) row[0] = row[1] = row[2] = 0;
+    image_[0][x] = 1;
+    image_[0][along] = -direction_[x] * inverse;
+    image_[1][y] = 1;
+    image_[1][along] = -direction_[y] * inverse;
+    image_[2][along] = inverse;
+    // Out of this range, products in float might be lost: nothing is rejected then.
+    tolerance_ = reach_ > 0x1p-40f && reach_ < 0x1p60f ? reach_ * (1.25f * 0x1p-17f)
+                                                       : std::numeric_limits<float>::infinity();
+  }
+
+  void walk_top() {
+    using Tag = hn::CappedTag<float, kTopWidth>;
+    const Tag d;
+    const LaneRay<Tag> ray(d, world_);
+    const std::size_t nodes = model_.top_nodes;
+    const TopBoxes* from = model_.top_boxes + nodes * at_.key0;
+    const TopBoxes* to = model_.top_boxes + nodes * at_.key1;
+    const auto s = hn::Set(d, at_.s);
+    WaitingChild stack[kTopWidth * kMaxTopDepth];
+    std::size_t size = 0;
+    const auto open = [&](std::uint32_t node) {
+      alignas(64) float order[kTopWidth];
+      std::uint32_t entered = 0;
+      for (std::size_t first = 0; first < kTopWidth; first += hn::Lanes(d))
+        entered |= ray.enter(d, hit_.t, order + first,
+                             [&](std::uint32_t row) {
+                               const auto a = hn::Load(d, from[node].bounds[row] + first);
+                               const auto b = hn::Load(d, to[node].bounds[row] + first);
+                               return hn::Add(a, hn::Mul(hn::Sub(b, a), s));
+                             })
+                   << first;
+      const TopLinks& links = model_.top_links[node];
+      entered &= (1u << links.count) - 1;
+      const std::size_t bottom = size;
+      for (; entered != 0; entered &= entered - 1) {
+        const auto c = static_cast<std::size_t>(__builtin_ctz(entered));
+        const WaitingChild child{order[c], links.child[c]};
+        std::size_t place = size++;
+        for (; place > bottom && stack[place - 1].order < child.order; --place)
+          stack[place] = stack[place - 1];
+        stack[place] = child;
+      }
+    };
+    for (std::uint32_t i = 1; i <= model_.top_roots; ++i) open(model_.top_nodes - i);
+    while (size > 0) {
+      const WaitingChild next = stack[--size];
+      if (next.order > hit_.t) continue;
+      if (!next.child.is_leaf()) {
+        open(next.child.index());
+        continue;
+      }
+      enter_cluster(next.child.index());
+      if (finished()) return;
+    }
+  }
+
+  void enter_cluster(std::uint32_t c) {
+    const RayTree& tree = trees_[c];
+    BoxRay local;
+    set_local(c, tree.bounds, local);
+    RayInTree ray(local, aim_, hit_);
+    walk_bvh(tree.nodes, ray, [&](std::uint32_t block) {
+      const RayBlock* b = tree.blocks + block;
+      test_block(*b);
+      while (b->has_next) test_block(*++b);
+    });
+  }
+
+  /// The ray in the cluster's basis.
+  void set_local(std::uint32_t c, const Aabb& bounds, BoxRay& local) const {
+    const std::size_t clusters = model_.clusters;
+    const std::size_t a = at_.key0 * clusters + c, b = at_.key1 * clusters + c;
+    const std::uint8_t needed = at_.key0 == at_.key1 ? kRegularKey : kRegularInterval;
+    if ((model_.map_kinds[a] & needed) == 0) {
+      local = make_box_ray(
+          ray_, interpolate(model_.local_from_world[a], model_.local_from_world[b], at_.s), bounds,
+          static_cast<double>(slack_));
+      return;
+    }
+    // With rows X, Y, Z of world_from_local, its inverse has the columns Y x Z, Z x X, X x Y, over
+    // the determinant X . (Y x Z).
+    const KeyMap &from = model_.key_maps[a], &to = model_.key_maps[b];
+    double m[3][4];
+    for (int j = 0; j < 3; ++j)
+      for (int i = 0; i < 4; ++i)
+        m[j][i] = from.m[j][i] + (static_cast<double>(to.m[j][i]) - from.m[j][i]) * at_.s;
+    double column[3][3];
+    for (int j = 0; j < 3; ++j) {
+      const double *u = m[(j + 1) % 3], *v = m[(j + 2) % 3];
+      for (int k = 0; k < 3; ++k)
+        column[j][k] = u[(k + 1) % 3] * v[(k + 2) % 3] - u[(k + 2) % 3] * v[(k + 1) % 3];
+    }
+    const double scale =
+        1 / (m[0][0] * column[0][0] + m[0][1] * column[0][1] + m[0][2] * column[0][2]);
+    double origin[3] = {}, direction[3] = {}, stretch[3] = {};
+    for (std::size_t j = 0; j < 3; ++j) {
+      const double o = ray_.origin[j] - static_cast<double>(model_.center[j]) - m[j][3];
+      for (std::size_t k = 0; k < 3; ++k) {
+        origin[k] += column[j][k] * o;
+        direction[k] += column[j][k] * ray_.direction[j];
+        stretch[k] += std::abs(column[j][k]);
+      }
+    }
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double o = origin[k] * scale + static_cast<double>(model_.local_centers[c][k]);
+      const auto d = static_cast<float>(direction[k] * scale);
+      const float size = static_cast<float>(std::abs(o)) +
+                         std::max(std::abs(bounds.lo[k]), std::abs(bounds.hi[k]));
+      const float slack = static_cast<float>(stretch[k] * std::abs(scale)) * slack_ +
+                          size * 0x1p-19f;
+      local.origin_for_low[k] = static_cast<float>(o) + slack;
+      local.origin_for_high[k] = static_cast<float>(o) - slack;
+      local.inverse[k] = 1 / (std::abs(d) < kShortest ? std::copysign(kShortest, d) : d);
+    }
+    local.t_begin = world_.t_begin;
+  }
+
+  HWY_NOINLINE void test_block(const RayBlock& block) {
+    if (vertices_.from == nullptr)
+      vertices_ = {model_.poses->key(at_.key0), model_.poses->key(at_.key1), at_.s};
+    const FloatTag d;
+    Sixteen x, y, z, size;
+    const auto row_of = [&](const float (&row)[3], const Points<FloatTag>& p) {
+      return hn::MulAdd(hn::Set(d, row[0]), p.x,
+                        hn::MulAdd(hn::Set(d, row[1]), p.y, hn::Mul(hn::Set(d, row[2]), p.z)));
+    };
+    for (std::size_t part = 0; part < Sixteen::kParts; ++part) {
+      const Points<FloatTag> posed = pose(d, block.vertex + part * hn::Lanes(d), vertices_);
+      const Points<FloatTag> p{hn::Sub(posed.x, hn::Set(d, origin_[0])),
+                               hn::Sub(posed.y, hn::Set(d, origin_[1])),
+                               hn::Sub(posed.z, hn::Set(d, origin_[2]))};
+      const auto across = row_of(image_[0], p), down = row_of(image_[1], p);
+      x.set(part, across);
+      y.set(part, down);
+      z.set(part, row_of(image_[2], p));
+      size.set(part, hn::Max(hn::Abs(across), hn::Abs(down)));
+    }
+    const auto tolerance = hn::Set(d, tolerance_), square = hn::Mul(tolerance, tolerance);
+    std::uint32_t passed = 0;
+    for (std::size_t first = 0; first < block.count; first += hn::Lanes(d)) {
+      const hn::RebindToSigned<FloatTag> di;
+      const hn::Rebind<std::uint8_t, FloatTag> db;
+      const auto place = [&](std::size_t k) {
+        return hn::PromoteTo(di, hn::LoadU(db, block.corner[k] + first));
+      };
+      const auto a = place(0), b = place(1), c = place(2);
+      const auto ax = x.pick(a), ay = y.pick(a), bx = x.pick(b), by = y.pick(b), cx = x.pick(c),
+                 cy = y.pick(c);
+      const auto wa = hn::MulSub(bx, cy, hn::Mul(by, cx)), wb = hn::MulSub(cx, ay, hn::Mul(cy, ax)),
+                 wc = hn::MulSub(ax, by, hn::Mul(ay, bx));
+      const auto most = hn::Max(size.pick(a), hn::Max(size.pick(b), size.pick(c)));
+      const auto error = hn::MulAdd(most, tolerance, square);
+      const auto outside = hn::And(hn::Gt(hn::Max(wa, hn::Max(wb, wc)), error),
+                                   hn::Lt(hn::Min(wa, hn::Min(wb, wc)), hn::Neg(error)));
+      const auto az = z.pick(a), bz = z.pick(b), cz = z.pick(c);
+      const auto beyond = hn::Gt(hn::Min(az, hn::Min(bz, cz)), hn::Set(d, hit_.t + tolerance_));
+      const auto before =
+          hn::Lt(hn::Max(az, hn::Max(bz, cz)), hn::Set(d, ray_.t_min - tolerance_));
+      const auto rejected = hn::Or(outside, hn::Or(beyond, before));
+      passed |= (mask_bits(d, rejected) ^ ((1u << hn::Lanes(d)) - 1)) << first;
+    }
+    passed &= (1u << block.count) - 1;
+    while (passed != 0) {
+      alignas(64) std::uint32_t corner[3][kBvhWidth], triangle[kBvhWidth];
+      std::size_t count = 0;
+      for (; passed != 0 && count < hn::Lanes(DoubleTag()); passed &= passed - 1, ++count) {
+        const auto lane = static_cast<std::size_t>(__builtin_ctz(passed));
+        for (std::size_t k = 0; k < 3; ++k) corner[k][count] = block.vertex[block.corner[k][lane]];
+        triangle[count] = block.triangle[lane];
+      }
+      for (std::size_t i = count; i < hn::Lanes(DoubleTag()); ++i)
+        for (auto& row : corner) row[i] = row[0];
+      tester_.test({corner[0], corner[1], corner[2]}, triangle, count, vertices_);
+    }
+  }
+
+  static constexpr float kShortest = 1e-30f;
+  static constexpr std::size_t kMaxTopDepth = 9;  // 16^8 clusters
+
+  const RayModel& model_;
+  const WorldRay& ray_;
+  const KeyInterval& at_;
+  const RayAim aim_;
+  RayHit& hit_;
+  RayTester tester_;
+  const RayTree* trees_ = nullptr;
+  VertexSource vertices_{nullptr, nullptr, 0};
+  float origin_[3], direction_[3];
+  float reach_, slack_;
+  BoxRay world_;
+  float image_[3][3], tolerance_;  ///< rows of the map into the image, and R
+};
+
+void TraceRay(const RayModel& model, const WorldRay& ray, const KeyInterval& at,
+              std::uint32_t segment, RayAim aim, RayHit& hit) {
+  RayInModel(model, ray, at, aim, hit).trace(segment);
+}
+
+void TestBlocks(const WorldRay& ray, std::span<const TriangleBlock> blocks,
+                const VertexSource& vertices, RayHit& hit) {
+  RayTester tester(ray, hit);
+  const std::size_t lanes = hn::Lanes(DoubleTag());
+  for (const TriangleBlock& block : blocks)
+    for (std::size_t first = 0; first < block.count; first += lanes)
+      tester.test({block.corner[0] + first, block.corner[1] + first, block.corner[2] + first},
+                  block.triangle + first, std::min(lanes, block.count - first), vertices);
 }
 
 }  // namespace rays
-using rays::EnterBoxes, rays::Intersect;
+using rays::TestBlocks, rays::TraceRay;
 }  // namespace HWY_NAMESPACE
 }  // namespace mdk
 HWY_AFTER_NAMESPACE();
@@ -203,8 +546,8 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace mdk {
 
-HWY_EXPORT(EnterBoxes);
-HWY_EXPORT(Intersect);
+HWY_EXPORT(TraceRay);
+HWY_EXPORT(TestBlocks);
 
 BoxRay make_box_ray(const WorldRay& world, const Affine3d& local_from_world, const Aabb& bounds,
                     double world_slack) {
@@ -233,14 +576,14 @@ BoxRay make_box_ray(const WorldRay& world, const Affine3d& local_from_world, con
   return ray;
 }
 
-std::size_t enter_boxes(const BoxRay& ray, const MovingBoxes& boxes, float t_max,
-                        EnteredBox* entered) {
-  return HWY_DYNAMIC_DISPATCH(EnterBoxes)(ray, boxes, t_max, entered);
+void trace_ray(const RayModel& model, const WorldRay& ray, const KeyInterval& at,
+               std::uint32_t segment, RayAim aim, RayHit& hit) {
+  HWY_DYNAMIC_DISPATCH(TraceRay)(model, ray, at, segment, aim, hit);
 }
 
-void intersect(const WorldRay& ray, const BoxRay& local, const RayTarget& target, RayAim aim,
-               RayHit& hit) {
-  HWY_DYNAMIC_DISPATCH(Intersect)(ray, local, target, aim, hit);
+void test_blocks(const WorldRay& ray, std::span<const TriangleBlock> blocks,
+                 const VertexSource& vertices, RayHit& hit) {
+  HWY_DYNAMIC_DISPATCH(TestBlocks)(ray, blocks, vertices, hit);
 }
 
 }  // namespace mdk

@@ -1,6 +1,6 @@
-// One ray at a time: which clusters it enters, sixteen boxes at once, then through a cluster's
-// eight-wide hierarchy: eight boxes, then eight triangles at once. docs/ray-queries.md tells why no
-// ray slips between two triangles and why no box hides a hit.
+// One ray at a time (docs/ray-queries.md): through the clusters' boxes at its time, sixteen at
+// once, then through a cluster's hierarchy, eight boxes at once, to blocks of sixteen triangles,
+// most of which a float test with a bounded error rejects before the test in double decides.
 #pragma once
 
 #include <cstddef>
@@ -12,12 +12,15 @@
 #include "common/structures/wide_bvh.h"
 #include "common/trace/hit_buffer.h"
 #include "common/trace/kernels/triangle_block.h"
+#include "mdk/model.h"
 
 namespace mdk {
 
+class KeyPoses;
+
 struct WorldRay {
-  Vec3d origin, direction;
-  float t_min = 0;  ///< hits lie past it
+  Vec3d origin, direction;  ///< the direction's largest component is in [1, 2)
+  float t_min = 0;          ///< hits lie past it
 };
 
 /// A ray against boxes of one basis. Each plane is moved outward by a slack, which is why there are
@@ -33,26 +36,17 @@ struct BoxRay {
 BoxRay make_box_ray(const WorldRay& ray, const Affine3d& local_from_world, const Aabb& bounds,
                     double world_slack);
 
-/// Boxes at s between two moments, a column each: rows low x, high x, low y, high y, low z, high z
-/// of `stride` floats, a multiple of kMovingBoxLanes, of which `count` are boxes.
-inline constexpr std::size_t kMovingBoxLanes = 16;
-struct MovingBoxes {
-  const float* from;
-  const float* to;
-  float s;
-  std::size_t count, stride;
+enum class RayAim {
+  kClosest,  ///< the closest hit, ties to the lower triangle
+  kAny,      ///< whether there is one
 };
 
-/// A box that a ray enters, and where.
-struct EnteredBox {
-  std::uint32_t box;
-  float enter;
+/// A hit so far: nothing farther than `t` counts.
+struct RayHit {
+  float t = std::numeric_limits<float>::infinity();
+  std::uint32_t triangle = kNoHit;
+  float bary1 = 0, bary2 = 0;  ///< barycentric coordinates of corners 1 and 2
 };
-
-/// The boxes that the ray enters before `t_max`, the nearest first, into `entered`, which has
-/// room for all. Returns how many.
-std::size_t enter_boxes(const BoxRay& ray, const MovingBoxes& boxes, float t_max,
-                        EnteredBox* entered);
 
 /// Where the vertices are: at s between two poses, as PosedMesh has them.
 struct VertexSource {
@@ -66,27 +60,66 @@ struct VertexSource {
   }
 };
 
-enum class RayAim {
-  kClosest,  ///< the closest hit, ties to the lower triangle
-  kAny,      ///< whether there is one
+/// A leaf of up to sixteen triangles that have up to sixteen vertices: each vertex is fetched once,
+/// and its place in `vertex` is what corners name. Unused places repeat the first.
+inline constexpr std::uint32_t kBlockVertices = 16;
+struct alignas(64) RayBlock {
+  std::uint32_t vertex[kBlockVertices];
+  std::uint8_t corner[3][kBlockTriangles];
+  std::uint8_t count;
+  bool has_next;  ///< the next block is of the same leaf
+  std::uint32_t triangle[kBlockTriangles];
 };
+static_assert(sizeof(RayBlock) == 192);
 
-/// A hit so far: nothing farther than `t` counts.
-struct RayHit {
-  float t = std::numeric_limits<float>::infinity();
-  std::uint32_t triangle = kNoHit;
-  float bary1 = 0, bary2 = 0;  ///< barycentric coordinates of corners 1 and 2
-};
-
-/// Triangles, with a hierarchy over them or without: then all are tested.
-struct RayTarget {
+/// The hierarchy of one cluster; the links of its leaves are numbers of blocks.
+struct RayTree {
   std::span<const WideBvhNode> nodes;
-  std::span<const TriangleBlock> blocks;  ///< of leaf i: block i
-  VertexSource vertices;                  ///< at the ray's time
+  const RayBlock* blocks;
+  Aabb bounds;  ///< of all, in the cluster's basis
 };
 
-/// Brings `hit` up to date. `local`: the ray in the basis of the hierarchy, if there is one.
-void intersect(const WorldRay& ray, const BoxRay& local, const RayTarget& target, RayAim aim,
-               RayHit& hit);
+/// Sixteen boxes at a key, side by side: rows low x, high x, low y, high y, low z, high z.
+inline constexpr std::size_t kTopWidth = 16;
+struct alignas(64) TopBoxes {
+  float bounds[6][kTopWidth];
+};
+/// What they are of: clusters, or other nodes.
+struct TopLinks {
+  WideBvhChild child[kTopWidth];
+  std::uint32_t count;
+};
+
+/// world_from_local at a key, with both origins moved to where numbers are small.
+struct KeyMap {
+  float m[3][4];
+};
+/// Whether the maps between two keys are the inverses of interpolated KeyMaps (AffinePath), and
+/// rounding them to float changes no more than RayModel::world_slack allows for.
+inline constexpr std::uint8_t kRegularKey = 1, kRegularInterval = 2;
+
+/// All that rays go through. F keys, K clusters, S segments, N nodes over clusters.
+struct RayModel {
+  Vec3f center;    ///< of the model's bounds
+  float diagonal;  ///< theirs
+  std::uint32_t clusters, top_nodes, top_roots;
+  const Aabb* key_boxes;             ///< F
+  const TopBoxes* top_boxes;         ///< F * N, key-major, the roots last
+  const TopLinks* top_links;         ///< N
+  const Affine3f* local_from_world;  ///< F * K, key-major
+  const KeyMap* key_maps;            ///< F * K: q -> world_from_local(q + local_center) - center
+  const std::uint8_t* map_kinds;     ///< F * K: of the key, and of the interval that begins there
+  const Vec3f* local_centers;        ///< K
+  const RayTree* trees;              ///< S * K
+  const KeyPoses* poses;
+};
+
+/// Brings `hit` up to date with what the ray meets at a time, which lies in `segment`.
+void trace_ray(const RayModel& model, const WorldRay& ray, const KeyInterval& at,
+               std::uint32_t segment, RayAim aim, RayHit& hit);
+
+/// The same for blocks without a structure: every triangle is tested in double.
+void test_blocks(const WorldRay& ray, std::span<const TriangleBlock> blocks,
+                 const VertexSource& vertices, RayHit& hit);
 
 }  // namespace mdk

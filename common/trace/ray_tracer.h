@@ -1,0 +1,40 @@
+// RayTracer: what a model's single rays go through, made once and valid at every time. RayQuery is
+// its public face; scenes call it for each character that a ray enters.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+
+#include "common/motion/model.h"
+#include "common/trace/kernels/ray_kernels.h"
+#include "mdk/ray_query.h"
+
+namespace mdk {
+
+/// Safe to use from many threads at once; the model must outlive it.
+class RayTracer {
+ public:
+  /// Cost: O(segments * T log T); runs in parallel.
+  explicit RayTracer(const ModelView& model);
+  ~RayTracer();
+  RayTracer(const RayTracer&) = delete;
+  RayTracer& operator=(const RayTracer&) = delete;
+
+  const ModelView& model() const;
+  /// Whether `time` is one of the model's; only such times may be traced at.
+  bool has_time(const KeyInterval& time) const;
+
+  /// What the ray hits at its own time, brute force's to the bit; with kAny, some hit if there is
+  /// one. A ray that has no direction or is not finite hits nothing. Allocates nothing, once the
+  /// keys it needs are there.
+  QueryHit trace(const QueryRay& ray, const KeyInterval& time, RayAim aim) const;
+
+  /// What it holds now.
+  std::size_t bytes() const;
+
+ private:
+  struct Data;
+  std::unique_ptr<Data> data_;
+};
+
+}  // namespace mdk
