@@ -92,13 +92,22 @@ std::size_t RayTracer::bytes() const {
   return sum;
 }
 
+const RayModel& RayTracer::rays() const { return data_->rays; }
+
+std::uint32_t RayTracer::segment_at(const KeyInterval& time) const {
+  const Data::KeyTimes& times = data_->key_times[time.key1];
+  return time.key0 == time.key1 ? times.segment_at : times.segment_before;
+}
+
+VertexSource RayTracer::vertices_at(const KeyInterval& time) const {
+  return {data_->poses.key(time.key0), data_->poses.key(time.key1), time.s};
+}
+
 QueryHit RayTracer::trace(const QueryRay& ray, const KeyInterval& time, RayAim aim) const {
   const ScaledRay scaled(ray);
   if (!scaled.usable) return {};
-  const Data::KeyTimes& times = data_->key_times[time.key1];
   RayHit hit = scaled.nothing_yet();
-  trace_ray(data_->rays, scaled.ray, time,
-            time.key0 == time.key1 ? times.segment_at : times.segment_before, aim, hit);
+  trace_ray(data_->rays, scaled.ray, time, segment_at(time), aim, hit);
   return scaled.in_callers_lengths(hit);
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 
 #include "common/motion/model.h"
@@ -28,6 +29,13 @@ class RayTracer {
   /// one. A ray that has no direction or is not finite hits nothing. Allocates nothing, once the
   /// keys it needs are there.
   QueryHit trace(const QueryRay& ray, const KeyInterval& time, RayAim aim) const;
+
+  // For other questions that go down the same hierarchies (mesh_queries.h, surface.h).
+  const RayModel& rays() const;
+  /// The segment whose hierarchies hold at one of the model's times.
+  std::uint32_t segment_at(const KeyInterval& time) const;
+  /// All vertices at a time, or at the keys around it.
+  VertexSource vertices_at(const KeyInterval& time) const;
 
   /// What it holds now.
   std::size_t bytes() const;
