@@ -41,6 +41,11 @@ std::uint32_t Model::clip_count() const {
   return static_cast<std::uint32_t>(data_->view.clips.size());
 }
 
+std::uint32_t Model::cluster_count() const { return data_->view.cluster_count(); }
+std::uint32_t Model::material_count() const {
+  return static_cast<std::uint32_t>(data_->view.appearance.materials.size());
+}
+
 ClipInfo Model::clip(std::uint32_t index) const {
   require_index(index, clip_count(), "clip");
   const Clip& clip = data_->view.clips[index];

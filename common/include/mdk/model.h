@@ -57,6 +57,8 @@ class Model {
   std::uint32_t triangle_count() const;
   std::uint32_t key_count() const;   ///< of all clips
   std::uint32_t clip_count() const;  ///< at least one
+  std::uint32_t cluster_count() const;
+  std::uint32_t material_count() const;
 
   ClipInfo clip(std::uint32_t clip) const;
   /// The first clip of this name, or none.
