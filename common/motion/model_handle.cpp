@@ -46,6 +46,12 @@ std::uint32_t Model::material_count() const {
   return static_cast<std::uint32_t>(data_->view.appearance.materials.size());
 }
 
+std::array<float, 4> Model::material_color(std::uint32_t index) const {
+  require_index(index, material_count(), "material");
+  const float* color = data_->view.appearance.materials[index].base_color;
+  return {color[0], color[1], color[2], color[3]};
+}
+
 ClipInfo Model::clip(std::uint32_t index) const {
   require_index(index, clip_count(), "clip");
   const Clip& clip = data_->view.clips[index];
@@ -72,8 +78,9 @@ KeyInterval Model::locate_time(std::uint32_t clip, double seconds) const {
 KeyInterval Model::locate_time(std::uint32_t index, double seconds, ClipWrap wrap) const {
   require_index(index, clip_count(), "clip");
   if (!std::isfinite(seconds)) throw Error(ErrorCode::kUsage, "a time must be finite, in seconds");
-  return mdk::locate_time(data_->view, index,
-                          wrapped_time(seconds, clip(index).seconds, wrap));
+  return mdk::locate_time(
+      data_->view, index,
+      wrapped_time(seconds, data_->view.clip_seconds(data_->view.clips[index]), wrap));
 }
 KeyInterval Model::at_key(std::uint32_t key) const {
   require_index(key, key_count(), "key");

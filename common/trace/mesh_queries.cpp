@@ -1,10 +1,10 @@
 // All hits: a ray that meets a leaf's sixteen triangles has each of them tested alone, by the same
 // test, so that none hides another.
 //
-// Closest point: a box in a cluster's basis is as far away, in the world, as it is there, divided by
-// the most that local_from_world stretches anything. That bound needs no inverse, so that maps that
-// are nearly singular only cost time. Boxes are visited by it, the nearest first; what the leaves
-// hold is measured in double on the vertices as they are traced.
+// Closest point: a box in a cluster's basis is as far away, in the world, as it is there, divided
+// by the most that local_from_world stretches anything. That bound needs no inverse, so that maps
+// that are nearly singular only cost time. Boxes are visited by it, the nearest first; what the
+// leaves hold is measured in double on the vertices as they are traced.
 #include "common/trace/mesh_queries.h"
 
 #include <algorithm>
@@ -12,6 +12,7 @@
 #include <cstddef>
 #include <limits>
 
+#include "common/motion/posed_mesh.h"
 #include "common/trace/query_keys.h"
 #include "common/trace/scaled_ray.h"
 
@@ -98,8 +99,8 @@ class AllHits {
 
 // --- closest point ---
 
-/// No less than the most that the linear part stretches a vector: the 8th root of the Frobenius norm
-/// of (A'A)^4, at most 3^(1/16) too large.
+/// No less than the most that the linear part stretches a vector: the 8th root of the Frobenius
+/// norm of (A'A)^4, at most 3^(1/16) too large.
 double largest_stretch(const Affine3d& a) {
   double m[3][3];
   double size = 0;
@@ -129,8 +130,8 @@ double largest_stretch(const Affine3d& a) {
 double distance(const Vec3d& p, const Aabb& box) {
   double square = 0;
   for (std::size_t k = 0; k < 3; ++k) {
-    const double off = std::max({static_cast<double>(box.lo[k]) - p[k], 0.0,
-                                 p[k] - static_cast<double>(box.hi[k])});
+    const double off = std::max(
+        {static_cast<double>(box.lo[k]) - p[k], 0.0, p[k] - static_cast<double>(box.hi[k])});
     square += off * off;
   }
   return std::sqrt(square);
@@ -166,8 +167,8 @@ LocalPoint make_local_point(const RayModel& model, const Vec3d& p, const KeyInte
   for (std::size_t k = 0; k < 3; ++k)
     size += std::abs(local.p[k]) + std::max(std::abs(static_cast<double>(bounds.lo[k])),
                                             std::abs(static_cast<double>(bounds.hi[k])));
-  const double world = std::abs(p.x) + std::abs(p.y) + std::abs(p.z) +
-                       static_cast<double>(model.diagonal);
+  const double world =
+      std::abs(p.x) + std::abs(p.y) + std::abs(p.z) + static_cast<double>(model.diagonal);
   local.slack = (size + stretch * world) * kSlack;
   local.known = true;
   return local;
@@ -193,8 +194,8 @@ void find_all_hits(const RayTracer& tracer, const QueryRay& ray, const KeyInterv
   for (std::uint32_t c = 0; c < model.clusters; ++c) {
     const RayTree& tree = trees[c];
     if (tree.nodes.empty()) continue;
-    const BoxRay local = make_box_ray(scaled.ray, map_at(model, at, c), tree.bounds,
-                                      reach * kSlack);
+    const BoxRay local =
+        make_box_ray(scaled.ray, map_at(model, at, c), tree.bounds, reach * kSlack);
     if (!meets(local, tree.bounds, t_max)) continue;
     stack.assign(1, 0);
     while (!stack.empty()) {
@@ -215,8 +216,8 @@ void find_all_hits(const RayTracer& tracer, const QueryRay& ray, const KeyInterv
   });
 }
 
-// The seven regions of Ericson, Real-Time Collision Detection, 5.1.5; a triangle without area is the
-// longest of its edges.
+// The seven regions of Ericson, Real-Time Collision Detection, 5.1.5; a triangle without area is
+// the longest of its edges.
 TrianglePoint closest_on_triangle(const Vec3d& p, const Vec3d& a, const Vec3d& b, const Vec3d& c) {
   const auto at = [&](double b1, double b2) {
     const Vec3d off = a + (b - a) * b1 + (c - a) * b2 - p;
@@ -260,10 +261,13 @@ QueryHit find_closest_point(const RayTracer& tracer, const Vec3f& point, float r
     heap.push_back(part);
     std::ranges::push_heap(heap, kFartherFirst);
   };
+  double reach = static_cast<double>(model.diagonal);
+  for (std::size_t k = 0; k < 3; ++k)
+    reach += std::abs(p[k]) + std::abs(static_cast<double>(model.center[k]));
   for (std::uint32_t c = 0; c < model.clusters; ++c) {
     if (trees[c].nodes.empty()) continue;
-    locals[c] = make_local_point(model, p, at, c, trees[c].bounds);
-    push({locals[c].bound(trees[c].bounds), c, WideBvhChild::inner(0)});
+    const double bound = distance(p, cluster_world_box(mesh, c, at)) - reach * kSlack;
+    push({std::max(bound, 0.0), c, WideBvhChild::inner(0)});
   }
   while (!heap.empty()) {
     std::ranges::pop_heap(heap, kFartherFirst);
@@ -271,6 +275,8 @@ QueryHit find_closest_point(const RayTracer& tracer, const Vec3f& point, float r
     heap.pop_back();
     if (next.bound > static_cast<double>(best.t)) break;
     const RayTree& tree = trees[next.cluster];
+    if (!locals[next.cluster].known)
+      locals[next.cluster] = make_local_point(model, p, at, next.cluster, tree.bounds);
     if (!next.child.is_leaf()) {
       const WideBvhNode& node = tree.nodes[next.child.index()];
       for (std::uint32_t i = 0; i < node.count; ++i)

@@ -10,13 +10,14 @@
 namespace mdk {
 
 /// Every hit in (t_min, t_max], ascending by t, then by triangle: those that the closest hit is the
-/// first of. `hits` is made empty first. Cost: that of a ray that meets nothing early, and a test of
-/// sixteen triangles for each leaf that has a hit.
+/// first of. `hits` is made empty first. Cost: that of a ray that meets nothing early, and a test
+/// of sixteen triangles for each leaf that has a hit.
 void find_all_hits(const RayTracer& tracer, const QueryRay& ray, const KeyInterval& at,
                    std::vector<QueryHit>& hits);
 
-/// The closest point of the mesh within `radius`, ties to the lower triangle; its t is the distance,
-/// computed in double and rounded once. Brute force over closest_on_triangle() gives the same bits.
+/// The closest point of the mesh within `radius`, ties to the lower triangle; its t is the
+/// distance, computed in double and rounded once. Brute force over closest_on_triangle() gives the
+/// same bits.
 QueryHit find_closest_point(const RayTracer& tracer, const Vec3f& point, float radius,
                             const KeyInterval& at);
 

@@ -102,7 +102,8 @@ std::vector<QueryHit> RayQuery::all_hits(const QueryRay& ray, const KeyInterval&
 QueryHit RayQuery::closest_point(const Vec3f& point, float radius, const KeyInterval& time) const {
   state_->require_time(time);
   if (std::isnan(radius)) throw Error(ErrorCode::kUsage, "the radius is not a number");
-  if (!std::isfinite(point.x) || !std::isfinite(point.y) || !std::isfinite(point.z)) return {};
+  if (!std::isfinite(point.x) || !std::isfinite(point.y) || !std::isfinite(point.z))
+    throw Error(ErrorCode::kUsage, "the point is not finite");
   return find_closest_point(state_->tracer, point, radius, time);
 }
 

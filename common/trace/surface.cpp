@@ -5,8 +5,8 @@
 namespace mdk {
 namespace {
 
-/// Where velocities are taken from: the keys around a time, of which the second is the later one. At
-/// a key, the interval that begins there, or at a clip's last key the one that ends there.
+/// Where velocities are taken from: the keys around a time, of which the second is the later one.
+/// At a key, the interval that begins there, or at a clip's last key the one that ends there.
 struct Motion {
   std::uint32_t key0, key1;
   double seconds = 0;  ///< 0: the clip has one key, nothing moves
@@ -81,8 +81,7 @@ Surface Surfaces::at(const QueryHit& hit, const KeyInterval& time, SurfaceParts 
   if (has(parts, SurfaceParts::kSmoothNormal) && (material.flags & kMaterialFlatShaded) == 0) {
     Vec3d normal[3];
     for (int k = 0; k < 3; ++k) normal[k] = to_double(vertex_normal(triangle.v[k], vertices));
-    surface.smooth_normal =
-        to_float(normalized(mix(normal, weight), to_double(surface.normal)));
+    surface.smooth_normal = to_float(normalized(mix(normal, weight), to_double(surface.normal)));
   }
   if (has(parts, SurfaceParts::kVelocity)) {
     const Motion motion = motion_at(model, time);

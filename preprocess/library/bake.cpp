@@ -15,7 +15,7 @@
 namespace mdk {
 namespace {
 
-constexpr std::size_t kPerChunk = 1 << 16;
+constexpr std::size_t kMostPositions = std::size_t{1} << 36;
 
 [[noreturn]] void refuse(ErrorCode code, const std::string& sentence) {
   throw Error(code, sentence);
@@ -23,15 +23,16 @@ constexpr std::size_t kPerChunk = 1 << 16;
 
 void require_counts(const BakeMesh& mesh) {
   constexpr std::size_t kMost = std::numeric_limits<std::uint32_t>::max() / 3;
-  const std::pair<std::size_t, const char*> counts[] = {{mesh.key_count, "keys"},
-                                                        {mesh.vertex_count, "vertices"},
-                                                        {mesh.triangle_count, "faces"}};
+  const std::pair<std::size_t, const char*> counts[] = {
+      {mesh.key_count, "keys"}, {mesh.vertex_count, "vertices"}, {mesh.triangle_count, "faces"}};
   for (const auto& [count, noun] : counts) {
     if (count == 0) refuse(ErrorCode::kBadInput, std::string("the mesh has no ") + noun);
     if (count > kMost)
       refuse(ErrorCode::kOverLimit, "the mesh has " + std::to_string(count) + " " + noun +
                                         ", more than " + std::to_string(kMost));
   }
+  if (mesh.key_count > kMostPositions / mesh.vertex_count)
+    refuse(ErrorCode::kOverLimit, "the mesh has more than 2^36 positions, keys times vertices");
   if (mesh.vertices == nullptr) refuse(ErrorCode::kUsage, "vertices: the list is missing");
   if (mesh.triangles == nullptr) refuse(ErrorCode::kUsage, "faces: the list is missing");
 }
@@ -39,8 +40,8 @@ void require_counts(const BakeMesh& mesh) {
 void set_times(const BakeMesh& mesh, PoseSequence& sequence) {
   sequence.key_times.resize(mesh.key_count);
   if (mesh.key_times == nullptr) {
-    if (!(mesh.fps > 0) || !std::isfinite(mesh.fps))
-      refuse(ErrorCode::kUsage, "fps must be above 0 and finite");
+    if (!(mesh.fps >= 1e-9) || !(mesh.fps <= 1e9))
+      refuse(ErrorCode::kUsage, "fps must be from 1e-9 to 1e9");
     for (std::size_t k = 0; k < mesh.key_count; ++k)
       sequence.key_times[k] = static_cast<double>(k) / mesh.fps;
     return;
@@ -51,8 +52,8 @@ void set_times(const BakeMesh& mesh, PoseSequence& sequence) {
       refuse(ErrorCode::kBadInput, "key times: number " + std::to_string(k) + " is not finite");
     sequence.key_times[k] = time - mesh.key_times[0];
     if (k > 0 && !(sequence.key_times[k] > sequence.key_times[k - 1]))
-      refuse(ErrorCode::kBadInput, "key times: number " + std::to_string(k) +
-                                       " does not come after the one before");
+      refuse(ErrorCode::kBadInput,
+             "key times: number " + std::to_string(k) + " does not come after the one before");
   }
 }
 
@@ -72,16 +73,14 @@ void set_triangles(const BakeMesh& mesh, PoseSequence& sequence) {
 void set_positions(const BakeMesh& mesh, PoseSequence& sequence) {
   const std::size_t count = mesh.key_count * mesh.vertex_count;
   sequence.positions.resize(count);
-  parallel_chunks(count, kPerChunk, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const float* p = mesh.vertices + 3 * i;
-      if (!std::isfinite(p[0]) || !std::isfinite(p[1]) || !std::isfinite(p[2]))
-        refuse(ErrorCode::kBadInput,
-               "vertices: vertex " + std::to_string(i % mesh.vertex_count) + " of key " +
-                   std::to_string(i / mesh.vertex_count) + " is not finite");
-      sequence.positions[i] = {p[0], p[1], p[2]};
-    }
-  });
+  for (std::size_t i = 0; i < count; ++i) {
+    const float* p = mesh.vertices + 3 * i;
+    if (!std::isfinite(p[0]) || !std::isfinite(p[1]) || !std::isfinite(p[2]))
+      refuse(ErrorCode::kBadInput, "vertices: vertex " + std::to_string(i % mesh.vertex_count) +
+                                       " of key " + std::to_string(i / mesh.vertex_count) +
+                                       " is not finite");
+    sequence.positions[i] = {p[0], p[1], p[2]};
+  }
 }
 
 PoseSequence sequence_of(const BakeMesh& mesh) {
@@ -101,16 +100,17 @@ PoseSequence sequence_of(const BakeMesh& mesh) {
 }  // namespace
 
 Model bake(const BakeMesh& mesh, const BakeOptions& options) {
-  const ThreadLimit limit(static_cast<int>(
-      std::min<unsigned>(options.threads, std::numeric_limits<int>::max())));
+  const ThreadLimit limit(
+      static_cast<int>(std::min<unsigned>(options.threads, std::numeric_limits<int>::max())));
   DecomposeOptions request;
   request.clusters = options.clusters;
   request.segments = options.segments;
-  if (!(options.quantize >= 0)) refuse(ErrorCode::kUsage, "quantize must be 0 or above");
+  if (!(options.quantize >= 0 && options.quantize <= 1))
+    refuse(ErrorCode::kUsage, "quantize must be from 0 to 1");
   if (options.quantize > 0) request.quantize = options.quantize;
   SilentProgress silent;
-  const auto model = std::make_shared<const ModelStorage>(
-      decompose(sequence_of(mesh), request, silent).model);
+  const auto model =
+      std::make_shared<const ModelStorage>(decompose(sequence_of(mesh), request, silent).model);
   return ModelHandle::make(model->view(), model);
 }
 

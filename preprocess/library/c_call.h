@@ -78,6 +78,9 @@ Struct read_struct(const Struct* given, const char* name) {
   if (size < sizeof(std::size_t) || size > 16 * sizeof(Struct))
     refuse(std::string(name) + " has no struct_size: set it up by its init function");
   std::memcpy(&full, given, size < sizeof(Struct) ? size : sizeof(Struct));
+  for (std::size_t i = sizeof(Struct); i < size; ++i)
+    if (reinterpret_cast<const char*>(given)[i] != 0)
+      refuse(std::string(name) + " asks for what this library is too old for");
   return full;
 }
 /// Writes as much of `full` as the caller's struct has.
@@ -87,7 +90,8 @@ void write_struct(const Struct& full, Struct* given, const char* name) {
   const std::size_t size = given->struct_size;
   if (size < sizeof(std::size_t) || size > 16 * sizeof(Struct))
     refuse(std::string(name) + " has no struct_size");
-  std::memcpy(given, &full, size < sizeof(Struct) ? size : sizeof(Struct));
+  std::memset(reinterpret_cast<char*>(given), 0, size);
+  std::memcpy(reinterpret_cast<char*>(given), &full, size < sizeof(Struct) ? size : sizeof(Struct));
   given->struct_size = size;
 }
 

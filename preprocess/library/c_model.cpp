@@ -68,6 +68,17 @@ mdk_status mdk_model_save(const mdk_model* model, const char* path) {
   });
 }
 
+void mdk_model_info_init(mdk_model_info* info) {
+  if (info == nullptr) return;
+  *info = {};
+  info->struct_size = sizeof *info;
+}
+void mdk_clip_info_init(mdk_clip_info* info) {
+  if (info == nullptr) return;
+  *info = {};
+  info->struct_size = sizeof *info;
+}
+
 mdk_status mdk_model_get_info(const mdk_model* model, mdk_model_info* info) {
   return call([&] {
     require(model, "model");
@@ -121,6 +132,15 @@ mdk_status mdk_model_get_key_times(const mdk_model* model, uint32_t clip, double
     const mdk::ClipInfo found = model->model.clip(clip);
     for (uint32_t k = 0; k < found.key_count; ++k)
       seconds[k] = model->model.key_time(found.first_key + k);
+  });
+}
+
+mdk_status mdk_model_get_material_color(const mdk_model* model, uint32_t material, float* rgba) {
+  return call([&] {
+    require(model, "model");
+    require(rgba, "rgba");
+    const std::array<float, 4> color = model->model.material_color(material);
+    std::copy(color.begin(), color.end(), rgba);
   });
 }
 

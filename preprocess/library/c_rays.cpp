@@ -1,5 +1,6 @@
 // Rays and points in C (mdk.h).
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -28,8 +29,7 @@ struct Strided {
 
   T at(std::size_t i, std::size_t component = 0) const {
     T value;
-    std::memcpy(&value,
-                reinterpret_cast<const char*>(first) + i * stride + component * sizeof(T),
+    std::memcpy(&value, reinterpret_cast<const char*>(first) + i * stride + component * sizeof(T),
                 sizeof(T));
     return value;
   }
@@ -42,7 +42,23 @@ std::string item(const char* list, std::size_t i, const char* fault) {
   return std::string(list) + ": number " + std::to_string(i) + " is " + fault;
 }
 
-/// When each item is looked at. Items in a row with the same time are located once.
+/// Throws Error (kUsage) that names the first of `count` items for which is_bad(i), and `list`.
+template <class IsBad>
+void require_none(std::size_t count, const IsBad& is_bad, const char* list, const char* fault) {
+  std::atomic<std::size_t> first = count;
+  mdk::parallel_chunks(count, std::size_t{1} << 14, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      if (!is_bad(i)) continue;
+      std::size_t known = first;
+      while (i < known && !first.compare_exchange_weak(known, i)) {
+      }
+      return;
+    }
+  });
+  if (first < count) refuse(item(list, first, fault));
+}
+
+/// When each item is looked at.
 class Times {
  public:
   Times(const mdk::Model& model, const double* times, std::size_t stride, std::uint32_t clip,
@@ -50,18 +66,20 @@ class Times {
       : model_(model), times_{times, stride}, clip_(clip), wrap_(mdk::c::wrap_of(wrap)) {
     seconds_ = model.clip(clip).seconds;  // throws for a clip that is not there
   }
+  void require_finite(std::size_t count) const {
+    if (times_.first == nullptr) return;
+    require_none(
+        times_.stride == 0 ? std::min<std::size_t>(count, 1) : count,
+        [&](std::size_t i) { return !std::isfinite(times_.at(i)); }, "times", "not finite");
+  }
 
   double seconds(std::size_t i) const { return times_.first == nullptr ? 0 : times_.at(i); }
-  KeyInterval at(std::size_t i) const {
-    const double time = seconds(i);
-    if (!std::isfinite(time)) refuse(item("times", i, "not finite"));
-    return model_.locate_time(clip_, time, wrap_);
-  }
+  KeyInterval at(std::size_t i) const { return model_.locate_time(clip_, seconds(i), wrap_); }
   /// Clip seconds a second of time: 1, or -1 while a ping-pong runs backwards, or 0 where once is
   /// over.
   float rate(std::size_t i) const {
     const double time = seconds(i);
-    if (wrap_ == mdk::ClipWrap::kOnce) return time >= 0 && time <= seconds_ ? 1.0f : 0.0f;
+    if (wrap_ == mdk::ClipWrap::kOnce) return time >= 0 && time < seconds_ ? 1.0f : 0.0f;
     if (wrap_ == mdk::ClipWrap::kLoop || !(seconds_ > 0)) return 1;
     double round = std::fmod(time, 2 * seconds_);
     if (round < 0) round += 2 * seconds_;
@@ -86,6 +104,17 @@ class Rays {
     if (rays_.count == 0) return;
     require(rays_.origins, "rays: origins");
     require(rays_.directions, "rays: directions");
+    times_.require_finite(rays_.count);
+    const Strided<float> t_min{rays_.t_min, rays_.t_min_stride};
+    const Strided<float> t_max{rays_.t_max, rays_.t_max_stride};
+    if (t_min.first != nullptr)
+      require_none(
+          rays_.count, [&](std::size_t i) { return std::isnan(t_min.at(i)); }, "t_min",
+          "not a number");
+    if (t_max.first != nullptr)
+      require_none(
+          rays_.count, [&](std::size_t i) { return std::isnan(t_max.at(i)); }, "t_max",
+          "not a number");
   }
 
   std::size_t count() const { return rays_.count; }
@@ -96,8 +125,6 @@ class Rays {
                  Strided<float>{rays_.directions, rays_.direction_stride}.point(i)};
     if (rays_.t_min != nullptr) ray.t_min = Strided<float>{rays_.t_min, rays_.t_min_stride}.at(i);
     if (rays_.t_max != nullptr) ray.t_max = Strided<float>{rays_.t_max, rays_.t_max_stride}.at(i);
-    if (std::isnan(ray.t_min)) refuse(item("t_min", i, "not a number"));
-    if (std::isnan(ray.t_max)) refuse(item("t_max", i, "not a number"));
     return ray;
   }
 
@@ -127,10 +154,18 @@ class Hits {
       hits_.uv[2 * i] = hit.bary1;
       hits_.uv[2 * i + 1] = hit.bary2;
     }
+    if (hits_.instance) hits_.instance[i] = hit.is_hit() ? 0 : MDK_NONE;
+    if (hits_.id) hits_.id[i] = 0;
     if (!needs_surface_) return;
     mdk::Surface surface;
     if (hit.is_hit()) {
       surface = query.surface(hit, time, parts_);
+      // Played backwards from a key, it is the interval before it that comes next: the one that
+      // goes on from the key before.
+      if (rate < 0 && hits_.velocity != nullptr && time.key0 == time.key1 && time.key0 > 0)
+        surface.velocity =
+            query.surface(hit, {time.key0 - 1, time.key0 - 1, 0}, mdk::SurfaceParts::kVelocity)
+                .velocity;
     } else {
       surface.source_triangle = surface.material = MDK_NONE;
     }
@@ -181,6 +216,7 @@ void mdk_rays_init(mdk_rays* rays, size_t count, const float* origins, const flo
   rays->origin_stride = rays->direction_stride = 3 * sizeof(float);
   rays->t_min_stride = rays->t_max_stride = sizeof(float);
   rays->time_stride = sizeof(double);
+  rays->mask_stride = sizeof(uint32_t);
 }
 
 void mdk_hits_init(mdk_hits* hits) {
@@ -252,21 +288,31 @@ mdk_status mdk_closest_points(mdk_model* model, const mdk_points* points, const 
     const Hits out(hits);
     const Times times(model->model, list.times, list.time_stride, list.clip, list.wrap);
     if (list.count >= kTooMany) refuse("points: count must be below 2^32");
-    if (list.count > 0) require(list.points, "points: points");
+    const Strided<float> points_in{list.points, list.point_stride};
+    const Strided<float> radii{list.radii, list.radius_stride};
+    if (list.count > 0) {
+      require(list.points, "points: points");
+      times.require_finite(list.count);
+      require_none(
+          list.count,
+          [&](std::size_t i) {
+            const Vec3f p = points_in.point(i);
+            return !std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z);
+          },
+          "points", "not finite");
+      if (radii.first != nullptr)
+        require_none(
+            list.count, [&](std::size_t i) { return std::isnan(radii.at(i)); }, "radii",
+            "not a number");
+    }
     const mdk::RayQuery& query = model->query();
-    for_each_item(list.count, static_cast<int>(std::min(list.threads, 1u << 16)),
-                  [&](std::size_t i) {
-                    const Vec3f p = Strided<float>{list.points, list.point_stride}.point(i);
-                    if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
-                      refuse(item("points", i, "not finite"));
-                    const float radius =
-                        list.radii == nullptr
-                            ? std::numeric_limits<float>::infinity()
-                            : Strided<float>{list.radii, list.radius_stride}.at(i);
-                    if (std::isnan(radius)) refuse(item("radii", i, "not a number"));
-                    const KeyInterval time = times.at(i);
-                    out.write(i, query, query.closest_point(p, radius, time), time,
-                              times.rate(i));
-                  });
+    for_each_item(
+        list.count, static_cast<int>(std::min(list.threads, 1u << 16)), [&](std::size_t i) {
+          const Vec3f p = points_in.point(i);
+          const float radius =
+              radii.first == nullptr ? std::numeric_limits<float>::infinity() : radii.at(i);
+          const KeyInterval time = times.at(i);
+          out.write(i, query, query.closest_point(p, radius, time), time, times.rate(i));
+        });
   });
 }

@@ -12,10 +12,10 @@ namespace mdk {
 /// An animated mesh of K keys, V vertices and T triangles, all in the caller's memory.
 struct BakeMesh {
   std::size_t key_count = 0, vertex_count = 0, triangle_count = 0;
-  const float* vertices = nullptr;         ///< K * V * 3, key-major, finite
+  const float* vertices = nullptr;           ///< K * V * 3, key-major, finite
   const std::uint32_t* triangles = nullptr;  ///< T * 3, below V, counter-clockwise from outside
-  const double* key_times = nullptr;       ///< K, rising, from any time; null: keys at `fps`
-  double fps = 30;                         ///< keys a second, where key_times is null
+  const double* key_times = nullptr;         ///< K, rising, from any time; null: keys at `fps`
+  double fps = 30;                           ///< keys a second, where key_times is null
   std::string clip_name = "clip";
 };
 

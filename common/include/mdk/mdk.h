@@ -6,7 +6,7 @@
  * unless it says so. No function crashes on numbers: what is not finite, or is not there, is an
  * error that names the argument. Pointers must be valid, and lists as long as is said.
  *
- * Structs begin with their size, so that they can grow: set them up by the *_init functions.
+ * Structs begin with their size, so that they can grow: set each up by its *_init function.
  * Coordinates are floats in the units of the mesh, times are seconds of a clip in double.
  */
 #ifndef MDK_MDK_H
@@ -30,11 +30,11 @@ extern "C" {
 typedef int32_t mdk_status;
 enum {
   MDK_OK = 0,
-  MDK_ERROR_INTERNAL = 1,   /* a bug in this library, or no memory */
-  MDK_ERROR_USAGE = 2,      /* an argument that cannot be */
-  MDK_ERROR_BAD_INPUT = 3,  /* a file's or mesh's content cannot be used */
-  MDK_ERROR_IO = 4,         /* a file cannot be read or written */
-  MDK_ERROR_OVER_LIMIT = 5  /* over a limit that is built in */
+  MDK_ERROR_INTERNAL = 1,  /* a bug in this library, or no memory */
+  MDK_ERROR_USAGE = 2,     /* an argument that cannot be */
+  MDK_ERROR_BAD_INPUT = 3, /* a file's or mesh's content cannot be used */
+  MDK_ERROR_IO = 4,        /* a file cannot be read or written */
+  MDK_ERROR_OVER_LIMIT = 5 /* over a limit that is built in */
 };
 
 /* What was wrong with this thread's last call that failed: one sentence. Valid until the thread's
@@ -53,9 +53,9 @@ typedef struct mdk_model mdk_model;
 /* What becomes of a time outside of the clip, which lasts D seconds. */
 typedef int32_t mdk_wrap;
 enum {
-  MDK_WRAP_LOOP = 0,      /* begins again every D seconds */
-  MDK_WRAP_ONCE = 1,      /* stands at the clip's first or last key */
-  MDK_WRAP_PING_PONG = 2  /* runs forwards, then backwards */
+  MDK_WRAP_LOOP = 0,     /* begins again every D seconds */
+  MDK_WRAP_ONCE = 1,     /* stands at the clip's first or last key */
+  MDK_WRAP_PING_PONG = 2 /* runs forwards, then backwards */
 };
 
 /* Maps and checks a .mdk file, which must not change while the model lives. Cost: a pass over its
@@ -74,6 +74,7 @@ typedef struct mdk_model_info {
   uint32_t vertex_count, triangle_count, key_count, clip_count, cluster_count, material_count;
   float bounds_low[3], bounds_high[3]; /* hold the mesh at every time of all clips */
 } mdk_model_info;
+MDK_API void mdk_model_info_init(mdk_model_info* info);
 MDK_API mdk_status mdk_model_get_info(const mdk_model* model, mdk_model_info* info);
 
 typedef struct mdk_clip_info {
@@ -83,16 +84,23 @@ typedef struct mdk_clip_info {
   uint32_t first_key, key_count;
   float bounds_low[3], bounds_high[3]; /* hold the mesh at every time of the clip */
 } mdk_clip_info;
+MDK_API void mdk_clip_info_init(mdk_clip_info* info);
 MDK_API mdk_status mdk_model_get_clip(const mdk_model* model, uint32_t clip, mdk_clip_info* info);
 /* The first clip of this name. */
 MDK_API mdk_status mdk_model_find_clip(const mdk_model* model, const char* name, uint32_t* clip);
 /* Seconds of a clip's keys: key_count numbers. */
 MDK_API mdk_status mdk_model_get_key_times(const mdk_model* model, uint32_t clip, double* seconds);
 
+/* Linear RGBA of a material, without texture and vertex colours: 4 floats. */
+MDK_API mdk_status mdk_model_get_material_color(const mdk_model* model, uint32_t material,
+                                                float* rgba);
+
 /* Corners of all triangles, counter-clockwise from outside: 3 * triangle_count numbers below
  * vertex_count. Hits count triangles in this order. */
 MDK_API mdk_status mdk_model_get_faces(const mdk_model* model, uint32_t* faces);
-/* The number that each triangle had in the mesh that was baked: triangle_count numbers. */
+/* The number that each triangle had in the mesh that was baked: triangle_count numbers. Corners
+ * keep their order, so barycentric coordinates hold there, too; vertices may be joined and
+ * reordered. */
 MDK_API mdk_status mdk_model_get_source_triangles(const mdk_model* model, uint32_t* triangles);
 /* Where the vertices are, as they are traced: 3 * vertex_count floats. Cost: O(vertices). */
 MDK_API mdk_status mdk_model_get_vertices(const mdk_model* model, uint32_t clip, double seconds,
@@ -100,7 +108,7 @@ MDK_API mdk_status mdk_model_get_vertices(const mdk_model* model, uint32_t clip,
 
 /* Builds what rays need, which else the first cast does. Cost: O(T log T) in parallel. */
 MDK_API mdk_status mdk_model_prepare(mdk_model* model);
-/* Bytes that rays need at present, beside the mapped file. */
+/* Bytes that rays need at present, beside the mapped file; builds what they need. */
 MDK_API mdk_status mdk_model_get_ray_bytes(mdk_model* model, size_t* bytes);
 
 /* ---- rays ------------------------------------------------------------------------------------ */
@@ -117,7 +125,8 @@ typedef struct mdk_rays {
   const float* t_min;      /* NULL: 0 */
   const float* t_max;      /* NULL: infinite */
   const double* times;     /* seconds; NULL: 0 */
-  size_t origin_stride, direction_stride, t_min_stride, t_max_stride, time_stride;
+  const uint32_t* masks;   /* instances of a scene are met where theirs shares a bit; NULL: all */
+  size_t origin_stride, direction_stride, t_min_stride, t_max_stride, time_stride, mask_stride;
   uint32_t clip;
   mdk_wrap wrap;
   uint32_t threads; /* of this call, the calling one among them; 0: all cores */
@@ -137,7 +146,9 @@ typedef struct mdk_hits {
   float* velocity;           /* 3: of the material point, units a second of the clip, as played */
   float* texcoord;           /* 2: as in glTF; 0 where there are none */
   uint32_t* material;
-  float* base_color; /* 4: linear RGBA, with texture and vertex colours */
+  float* base_color;  /* 4: linear RGBA, with texture and vertex colours */
+  uint32_t* instance; /* of a scene; 0 for a hit of a model */
+  int64_t* id;        /* the user's number of the instance; 0 for a model */
 } mdk_hits;
 
 /* Packed lists: 12 bytes from ray to ray, all at time 0 of clip 0, looping. */
@@ -189,15 +200,15 @@ typedef struct mdk_mesh {
   double fps;              /* 30 where key_times and this are not given */
   const char* clip_name;   /* NULL: "clip" */
 } mdk_mesh;
-MDK_API void mdk_mesh_init(mdk_mesh* mesh, size_t key_count, size_t vertex_count,
-                           size_t face_count, const float* vertices, const uint32_t* faces);
+MDK_API void mdk_mesh_init(mdk_mesh* mesh, size_t key_count, size_t vertex_count, size_t face_count,
+                           const float* vertices, const uint32_t* faces);
 
 typedef struct mdk_bake_options {
   size_t struct_size;
-  uint32_t clusters;  /* exactly so many; 0: as many as pay */
-  uint32_t segments;  /* stretches of time with boxes of their own; 0: as many as pay */
-  double quantize;    /* positions may be so far off, in rest pose diagonals; 0: exact */
-  uint32_t threads;   /* 0: all cores */
+  uint32_t clusters; /* exactly so many; 0: as many as pay */
+  uint32_t segments; /* stretches of time with boxes of their own; 0: as many as pay */
+  double quantize;   /* positions may be so far off, in rest pose diagonals; 0: exact */
+  uint32_t threads;  /* 0: all cores */
 } mdk_bake_options;
 MDK_API void mdk_bake_options_init(mdk_bake_options* options);
 

@@ -59,6 +59,8 @@ class Model {
   std::uint32_t clip_count() const;  ///< at least one
   std::uint32_t cluster_count() const;
   std::uint32_t material_count() const;
+  /// Linear RGBA, without texture and vertex colours.
+  std::array<float, 4> material_color(std::uint32_t material) const;
 
   ClipInfo clip(std::uint32_t clip) const;
   /// The first clip of this name, or none.
@@ -79,8 +81,8 @@ class Model {
   /// Seconds of a key, from its clip's first one.
   double key_time(std::uint32_t key) const;
 
-  /// Where all vertices are at a time that locate_time() or at_key() gave, as they are traced. Cost:
-  /// O(vertices).
+  /// Where all vertices are at a time that locate_time() or at_key() gave, as they are traced.
+  /// Cost: O(vertices).
   std::vector<Vec3f> vertices(const KeyInterval& time) const;
   /// The vertices of a triangle's corners, counter-clockwise seen from outside.
   std::array<std::uint32_t, 3> triangle(std::uint32_t triangle) const;

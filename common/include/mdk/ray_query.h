@@ -54,8 +54,8 @@ struct Surface {
   Vec3f position;       ///< on the triangle, by its barycentric coordinates
   Vec3f normal;         ///< the triangle's own, of unit length, outward; 0 for one without area
   Vec3f smooth_normal;  ///< of unit length, interpolated between the vertices
-  Vec3f velocity;       ///< of the material point: units a second of the clip. At a key, as it goes on
-  float u = 0, v = 0;   ///< texture coordinates as in glTF
+  Vec3f velocity;  ///< of the material point: units a second of the clip. At a key, as it goes on
+  float u = 0, v = 0;        ///< texture coordinates as in glTF
   float base_color[4] = {};  ///< linear RGBA, with texture and vertex colours
   std::uint32_t material = 0;
   std::uint32_t source_triangle = 0;  ///< its number in the mesh that was baked
@@ -117,12 +117,12 @@ class RayQuery {
   std::vector<QueryHit> all_hits(const QueryRay& ray, const KeyInterval& time) const;
 
   /// The closest point of the mesh within `radius` (itself included), ties to the lower triangle: t
-  /// is the distance. A point that is not finite finds nothing. Throws Error (kUsage) for a radius
-  /// that is NaN.
+  /// is the distance. Throws Error (kUsage) for a point that is not finite, or a radius that is
+  /// NaN.
   QueryHit closest_point(const Vec3f& point, float radius, const KeyInterval& time) const;
 
-  /// What lies at a hit of this model at its time. Throws Error (kUsage) for a miss. Cost: O(1); the
-  /// first smooth normal O(triangles).
+  /// What lies at a hit of this model at its time. Throws Error (kUsage) for a miss. Cost: O(1);
+  /// the first smooth normal O(triangles).
   Surface surface(const QueryHit& hit, const KeyInterval& time,
                   SurfaceParts parts = SurfaceParts::kAll) const;
 
