@@ -38,6 +38,10 @@ struct Strided {
   }
 };
 
+bool is_finite(const Vec3f& v) {
+  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
 std::string item(const char* list, std::size_t i, const char* fault) {
   return std::string(list) + ": number " + std::to_string(i) + " is " + fault;
 }
@@ -105,6 +109,8 @@ class Rays {
     require(rays_.origins, "rays: origins");
     require(rays_.directions, "rays: directions");
     times_.require_finite(rays_.count);
+    require_finite_points(rays_.origins, rays_.origin_stride, "origins");
+    require_finite_points(rays_.directions, rays_.direction_stride, "directions");
     const Strided<float> t_min{rays_.t_min, rays_.t_min_stride};
     const Strided<float> t_max{rays_.t_max, rays_.t_max_stride};
     if (t_min.first != nullptr)
@@ -129,6 +135,13 @@ class Rays {
   }
 
  private:
+  void require_finite_points(const float* first, std::size_t stride, const char* list) const {
+    const Strided<float> points{first, stride};
+    require_none(
+        stride == 0 ? 1 : rays_.count, [&](std::size_t i) { return !is_finite(points.point(i)); },
+        list, "not finite");
+  }
+
   mdk_rays rays_;
   Times times_;
 };
@@ -217,6 +230,7 @@ void mdk_rays_init(mdk_rays* rays, size_t count, const float* origins, const flo
   rays->t_min_stride = rays->t_max_stride = sizeof(float);
   rays->time_stride = sizeof(double);
   rays->mask_stride = sizeof(uint32_t);
+  rays->wrap = MDK_WRAP_ONCE;
 }
 
 void mdk_hits_init(mdk_hits* hits) {
@@ -234,6 +248,7 @@ void mdk_points_init(mdk_points* points, size_t count, const float* xyz) {
   points->point_stride = 3 * sizeof(float);
   points->radius_stride = sizeof(float);
   points->time_stride = sizeof(double);
+  points->wrap = MDK_WRAP_ONCE;
 }
 
 mdk_status mdk_cast(mdk_model* model, const mdk_rays* rays, const mdk_hits* hits) {
@@ -294,12 +309,8 @@ mdk_status mdk_closest_points(mdk_model* model, const mdk_points* points, const 
       require(list.points, "points: points");
       times.require_finite(list.count);
       require_none(
-          list.count,
-          [&](std::size_t i) {
-            const Vec3f p = points_in.point(i);
-            return !std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z);
-          },
-          "points", "not finite");
+          list.count, [&](std::size_t i) { return !is_finite(points_in.point(i)); }, "points",
+          "not finite");
       if (radii.first != nullptr)
         require_none(
             list.count, [&](std::size_t i) { return std::isnan(radii.at(i)); }, "radii",

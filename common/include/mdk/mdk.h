@@ -114,9 +114,8 @@ MDK_API mdk_status mdk_model_get_ray_bytes(mdk_model* model, size_t* bytes);
 /* ---- rays ------------------------------------------------------------------------------------ */
 
 /* Rays: origin + t direction, for t in (t_min, t_max]. Each list has a stride in bytes from one
- * item to the next; stride 0 gives every ray the first item. A ray without a direction, or whose
- * origin or direction is not finite, hits nothing; a t_min or t_max that is NaN, or a time that is
- * not finite, is an error. */
+ * item to the next; stride 0 gives every ray the first item. A ray without a direction hits nothing;
+ * an origin, direction or time that is not finite, or a t_min or t_max that is NaN, is an error. */
 typedef struct mdk_rays {
   size_t struct_size;
   size_t count;            /* fewer than 2^32 */
@@ -151,7 +150,7 @@ typedef struct mdk_hits {
   int64_t* id;        /* the user's number of the instance; 0 for a model */
 } mdk_hits;
 
-/* Packed lists: 12 bytes from ray to ray, all at time 0 of clip 0, looping. */
+/* Packed lists: 12 bytes from ray to ray, all at time 0 of clip 0, played once. */
 MDK_API void mdk_rays_init(mdk_rays* rays, size_t count, const float* origins,
                            const float* directions);
 /* Nothing wanted yet. */
