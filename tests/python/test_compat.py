@@ -40,22 +40,45 @@ def test_open3d_names(sheet):
     assert np.array_equal(np.diff(listed["ray_splits"]), scene.count_intersections(rays(), time=0.4))
 
 
+def open3d_scene(o3d, vertices, faces):
+    scene = o3d.t.geometry.RaycastingScene()
+    scene.add_triangles(o3d.core.Tensor(vertices), o3d.core.Tensor(faces))
+    return scene
+
+
+def open3d_casts(o3d):
+    """Whether its rays hit a square: Debian's 0.16 finds nothing at all on some machines."""
+    square = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], np.float32)
+    scene = open3d_scene(o3d, square, np.array([[0, 1, 2], [0, 2, 3]], np.uint32))
+    ray = o3d.core.Tensor(np.array([[0.5, 0.25, 2, 0, 0, -1]], np.float32))
+    return np.isfinite(scene.cast_rays(ray)["t_hit"].numpy()[0])
+
+
 @pytest.mark.parametrize("time", [0.0, 0.13, 0.5, 0.99])
 def test_hits_are_those_of_open3d(sheet, time):
     o3d = pytest.importorskip("open3d")
-    _, faces, model = sheet
-    theirs = o3d.t.geometry.RaycastingScene()
-    core = o3d.core
-    theirs.add_triangles(core.Tensor(model.vertices(time)), core.Tensor(model.faces))
-    expected = theirs.cast_rays(core.Tensor(rays()))
+    if not open3d_casts(o3d):
+        pytest.skip("this Open3D's rays do not even hit a square")
+    _, _, model = sheet
+    expected = open3d_scene(o3d, model.vertices(time), model.faces).cast_rays(o3d.core.Tensor(rays()))
     ours = RaycastingScene()
     ours.add_triangles(model)
     got = ours.cast_rays(rays(), time=time)
     t = expected["t_hit"].numpy()
-    assert np.array_equal(np.isfinite(t), np.isfinite(got["t_hit"]))
     hit = np.isfinite(t)
+    assert np.array_equal(hit, np.isfinite(got["t_hit"]))
     assert np.allclose(t[hit], got["t_hit"][hit], rtol=1e-5)
     source = model.source_triangles[expected["primitive_ids"].numpy()[hit]]
     assert (source == got["primitive_ids"][hit]).mean() > 0.98  # but for rays along edges
-    near = theirs.compute_distance(core.Tensor(rays()[:, :3].copy())).numpy()
-    assert np.allclose(near, ours.compute_distance(rays()[:, :3], time=time), rtol=1e-5)
+
+
+@pytest.mark.parametrize("time", [0.0, 0.13, 0.5, 0.99])
+def test_distances_are_those_of_open3d(sheet, time):
+    o3d = pytest.importorskip("open3d")
+    _, _, model = sheet
+    points = np.random.default_rng(3).uniform(-1, 2, (300, 3)).astype(np.float32)
+    theirs = open3d_scene(o3d, model.vertices(time), model.faces)
+    ours = RaycastingScene()
+    ours.add_triangles(model)
+    assert np.allclose(theirs.compute_distance(o3d.core.Tensor(points)).numpy(),
+                       ours.compute_distance(points, time=time), rtol=1e-5, atol=1e-6)
