@@ -1,6 +1,7 @@
 #include "common/trace/ray_blocks.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "common/base/parallel.h"
 
@@ -79,7 +80,10 @@ RaySegment::RaySegment(const ModelView& model, std::uint32_t segment)
     nodes_[c] = std::move(tree.nodes);
     nodes_[c].shrink_to_fit();
     blocks_[c].shrink_to_fit();
-    trees_[c] = {nodes_[c], blocks_[c].data(), nodes_[c][0].box()};
+    trees_[c] = {nodes_[c], blocks_[c].data(), {}};
+    const Aabb box = nodes_[c][0].box();
+    for (std::size_t k = 0; k < 3; ++k)
+      trees_[c].size[k] = std::max(std::abs(box.lo[k]), std::abs(box.hi[k]));
   });
 }
 

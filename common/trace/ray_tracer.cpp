@@ -7,7 +7,6 @@
 #include "common/base/parallel.h"
 #include "common/trace/query_keys.h"
 #include "common/trace/ray_blocks.h"
-#include "common/trace/scaled_ray.h"
 
 namespace mdk {
 namespace {
@@ -31,12 +30,14 @@ struct RayTracer::Data {
     for (const RaySegment& segment : segments)
       trees.insert(trees.end(), segment.trees().begin(), segment.trees().end());
     find_times();
+    for (const Aabb& box : model.key_boxes)
+      key_boxes.push_back({{box.lo.x, box.lo.y, box.lo.z, 0}, {box.hi.x, box.hi.y, box.hi.z, 0}});
     rays = {.center = model.bounds.center(),
             .diagonal = diagonal(model.bounds),
             .clusters = model.cluster_count(),
             .top_nodes = top.nodes(),
             .top_roots = top.roots(),
-            .key_boxes = model.key_boxes.data(),
+            .key_boxes = key_boxes.data(),
             .top_boxes = top.boxes(),
             .top_links = top.links(),
             .local_from_world = model.local_from_world.data(),
@@ -70,6 +71,7 @@ struct RayTracer::Data {
   std::vector<RaySegment> segments;
   std::vector<RayTree> trees;
   std::vector<KeyTimes> key_times;
+  std::vector<KeyBox> key_boxes;
   RayModel rays;
 };
 
@@ -93,13 +95,9 @@ std::size_t RayTracer::bytes() const {
 }
 
 QueryHit RayTracer::trace(const QueryRay& ray, const KeyInterval& time, RayAim aim) const {
-  const ScaledRay scaled(ray);
-  if (!scaled.usable) return {};
   const Data::KeyTimes& times = data_->key_times[time.key1];
-  RayHit hit = scaled.nothing_yet();
-  trace_ray(data_->rays, scaled.ray, time,
-            time.key0 == time.key1 ? times.segment_at : times.segment_before, aim, hit);
-  return scaled.in_callers_lengths(hit);
+  return trace_ray(data_->rays, ray, time,
+                   time.key0 == time.key1 ? times.segment_at : times.segment_before, aim);
 }
 
 }  // namespace mdk

@@ -22,6 +22,7 @@
 #include "common/trace/kernels/ray_kernels.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #undef HWY_TARGET_INCLUDE
@@ -29,8 +30,10 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 // after highway.h
+#include "common/simd/four-inl.h"
 #include "common/trace/kernels/walk-inl.h"
 #include "common/trace/query_keys.h"
+#include "common/trace/scaled_ray.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace mdk {
@@ -166,17 +169,41 @@ class RayTester {
 
 // --- boxes ---
 
-/// A ray against boxes of one basis, as make_box_ray() has it, its numbers in every lane: per axis
-/// the plane that it meets first, and last.
+/// A component so small moves the ray by less than any slack on its way to anything; kept from zero,
+/// its inverse is finite and no product is without a value.
+constexpr float kShortest = 1e-30f;
+
+/// A ray against boxes of one basis: per axis where the plane that it meets first is seen from, and
+/// the last, each plane being moved outward by a slack.
+struct BoxRay {
+  alignas(16) float near[4], far[4], inverse[4];
+  std::uint32_t near_row[3];  ///< in rows of planes: low x, high x, low y...
+  float t_begin;              ///< what ends before it is not entered
+
+  HWY_INLINE BoxRay(const FourFloats& origin, const FourFloats& direction, const FourFloats& slack,
+                    float begin)
+      : t_begin(begin) {
+    const FourFloats one = FourFloats::all(1);
+    const FourFloats inverted =
+        one / with_sign(max(abs(direction), FourFloats::all(kShortest)), direction);
+    const FourFloats for_low = origin + slack, for_high = origin - slack;
+    if_negative(inverted, for_high, for_low).store(near);
+    if_negative(inverted, for_low, for_high).store(far);
+    inverted.store(inverse);
+    const std::uint32_t falls = inverted.negative();
+    for (std::uint32_t k = 0; k < 3; ++k) near_row[k] = 2 * k + (falls >> k & 1u);
+  }
+};
+
+/// The same with its numbers in every lane.
 template <class D>
 class LaneRay {
  public:
   HWY_INLINE LaneRay(D d, const BoxRay& ray) : t_begin_(hn::Set(d, ray.t_begin)) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      const bool rises = ray.inverse[axis] >= 0;
-      near_row_[axis] = static_cast<std::uint32_t>(2 * axis + (rises ? 0 : 1));
-      near_[axis] = hn::Set(d, rises ? ray.origin_for_low[axis] : ray.origin_for_high[axis]);
-      far_[axis] = hn::Set(d, rises ? ray.origin_for_high[axis] : ray.origin_for_low[axis]);
+      near_row_[axis] = ray.near_row[axis];
+      near_[axis] = hn::Set(d, ray.near[axis]);
+      far_[axis] = hn::Set(d, ray.far[axis]);
       inverse_[axis] = hn::Set(d, ray.inverse[axis]);
     }
   }
@@ -263,124 +290,97 @@ class Sixteen {
 };
 
 #if HWY_TARGET != HWY_SCALAR
-/// Four vertices at the source's time; a lane more than a vertex has is read.
-HWY_INLINE Points<hn::FixedTag<float, 4>> pose_four(const std::uint32_t* vertex,
-                                                    const VertexSource& source) {
-  const hn::FixedTag<float, 4> d;
-  const auto s = hn::Set(d, source.s);
-  hn::Vec<hn::FixedTag<float, 4>> row[4];
-  for (std::size_t i = 0; i < 4; ++i) {
-    const auto from = hn::LoadU(d, &source.from[vertex[i]].x);
-    const auto to = hn::LoadU(d, &source.to[vertex[i]].x);
-    row[i] = hn::Add(from, hn::Mul(hn::Sub(to, from), s));
+/// In every four lanes a vertex and a lane more: vertex[0], vertex[4], vertex[8]...
+template <class D>
+HWY_INLINE hn::Vec<D> every_fourth(D d, const std::uint32_t* vertex, const Vec3f* positions) {
+  if constexpr (hn::MaxLanes(d) == 4) {
+    return hn::LoadU(d, &positions[vertex[0]].x);
+  } else {
+    const hn::Half<D> half;
+    return hn::Combine(d, every_fourth(half, vertex + hn::Lanes(half), positions),
+                       every_fourth(half, vertex, positions));
   }
-  const auto xy02 = hn::InterleaveLower(d, row[0], row[2]),
-             xy13 = hn::InterleaveLower(d, row[1], row[3]),
-             z02 = hn::InterleaveUpper(d, row[0], row[2]),
-             z13 = hn::InterleaveUpper(d, row[1], row[3]);
-  return {hn::InterleaveLower(d, xy02, xy13), hn::InterleaveUpper(d, xy02, xy13),
-          hn::InterleaveLower(d, z02, z13)};
 }
 #endif
 
-/// As many vertices as a vector holds.
+/// As many vertices as a vector holds, at the source's time.
 template <class D>
 HWY_INLINE Points<D> pose(D d, const std::uint32_t* vertex, const VertexSource& source) {
 #if HWY_TARGET == HWY_SCALAR
   const Vec3f p = source.position(vertex[0]);
   return {hn::Set(d, p.x), hn::Set(d, p.y), hn::Set(d, p.z)};
 #else
-  if constexpr (hn::MaxLanes(d) == 4) {
-    return pose_four(vertex, source);
-  } else {
-    const hn::Half<D> half;
-    const auto low = pose(half, vertex, source),
-               high = pose(half, vertex + hn::Lanes(half), source);
-    return {hn::Combine(d, high.x, low.x), hn::Combine(d, high.y, low.y),
-            hn::Combine(d, high.z, low.z)};
-  }
+  const auto s = hn::Set(d, source.s);
+  const auto row = [&](std::size_t i) {
+    const auto from = every_fourth(d, vertex + i, source.from);
+    const auto to = every_fourth(d, vertex + i, source.to);
+    return hn::Add(from, hn::Mul(hn::Sub(to, from), s));
+  };
+  const auto row0 = row(0), row1 = row(1), row2 = row(2), row3 = row(3);
+  const auto xy02 = hn::InterleaveLower(d, row0, row2), xy13 = hn::InterleaveLower(d, row1, row3),
+             z02 = hn::InterleaveUpper(d, row0, row2), z13 = hn::InterleaveUpper(d, row1, row3);
+  return {hn::InterleaveLower(d, xy02, xy13), hn::InterleaveUpper(d, xy02, xy13),
+          hn::InterleaveLower(d, z02, z13)};
 #endif
 }
 
-/// A ray by the inverse of `from` + s (`to` - `from`). `stretch`: no less than what the inverse
-/// makes of a box of half side 1, along each axis, but for rounding.
+/// The ray by the inverse of a map that is interpolated between two keys, without its origins.
 struct MappedRay {
-  alignas(16) float origin[4], direction[4], stretch[4];
+  FourFloats origin, direction;
+  FourFloats stretch;  ///< what the inverse makes of a box of half side 1, along each axis
 };
 
 /// With rows X, Y, Z of the map's linear part, its inverse has the columns Y x Z, Z x X and X x Y,
-/// over X . (Y x Z). A column's components stand in the order z, x, y.
-HWY_INLINE MappedRay map_ray(const KeyMap& from, const KeyMap& to, double s,
-                             const Vec3d& direction, const Vec3d& origin) {
-  MappedRay ray;
-#if HWY_TARGET == HWY_AVX2 || HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX3_DL
-  const hn::FixedTag<double, 4> d;
-  const hn::FixedTag<float, 4> df;
-  const hn::FixedTag<std::int64_t, 4> di;
-  alignas(32) static constexpr std::int64_t kTurn[4] = {1, 2, 0, 3};
-  const auto turn_indices = hn::IndicesFromVec(d, hn::Load(di, kTurn));
-  const auto last_index = hn::IndicesFromVec(d, hn::Set(di, 3));
-  const auto turned = [&](auto v) { return hn::TableLookupLanes(v, turn_indices); };
+/// over X . (Y x Z). They stand here in the order z, x, y.
+HWY_INLINE MappedRay map_ray(const KeyMap& from, const KeyMap& to, float s, const Vec3d& direction,
+                             const Vec3d& origin) {
+  const FourDoubles share = FourDoubles::all(static_cast<double>(s));
   const auto row = [&](int j) {
-    const auto a = hn::PromoteTo(d, hn::LoadU(df, from.m[j])),
-               b = hn::PromoteTo(d, hn::LoadU(df, to.m[j]));
-    return hn::Add(a, hn::Mul(hn::Sub(b, a), hn::Set(d, s)));
+    const FourDoubles a = to_double(FourFloats::load(from.m[j])),
+                      b = to_double(FourFloats::load(to.m[j]));
+    return a + (b - a) * share;
   };
-  const auto x = row(0), y = row(1), z = row(2);
-  const auto tx = turned(x), ty = turned(y), tz = turned(z);
-  const auto cx = hn::Sub(hn::Mul(y, tz), hn::Mul(ty, z)),
-             cy = hn::Sub(hn::Mul(z, tx), hn::Mul(tz, x)),
-             cz = hn::Sub(hn::Mul(x, ty), hn::Mul(tx, y));
-  // The last lane of a column is 0: there stand the same two numbers.
-  const auto scale = hn::Div(hn::Set(d, 1.0), hn::SumOfLanes(d, hn::Mul(cx, turned(tx))));
-  const auto part = [&](auto column, double component, auto r) {
-    return hn::Mul(column, hn::Sub(hn::Set(d, component), hn::TableLookupLanes(r, last_index)));
-  };
-  const auto o = hn::Mul(
-      hn::Add(hn::Add(part(cx, origin.x, x), part(cy, origin.y, y)), part(cz, origin.z, z)), scale);
-  const auto v = hn::Mul(hn::Add(hn::Add(hn::Mul(cx, hn::Set(d, direction.x)),
-                                         hn::Mul(cy, hn::Set(d, direction.y))),
-                                 hn::Mul(cz, hn::Set(d, direction.z))),
-                         scale);
-  const auto stretch =
-      hn::Mul(hn::Add(hn::Add(hn::Abs(cx), hn::Abs(cy)), hn::Abs(cz)), hn::Abs(scale));
-  hn::Store(hn::DemoteTo(df, turned(o)), df, ray.origin);
-  hn::Store(hn::DemoteTo(df, turned(v)), df, ray.direction);
-  hn::Store(hn::DemoteTo(df, turned(stretch)), df, ray.stretch);
-#else
-  double m[3][4], column[3][3];
-  for (int j = 0; j < 3; ++j)
-    for (int i = 0; i < 4; ++i)
-      m[j][i] = from.m[j][i] + (static_cast<double>(to.m[j][i]) - from.m[j][i]) * s;
-  for (int j = 0; j < 3; ++j) {
-    const double *u = m[(j + 1) % 3], *v = m[(j + 2) % 3];
-    for (int k = 0; k < 3; ++k)
-      column[j][k] = u[(k + 1) % 3] * v[(k + 2) % 3] - u[(k + 2) % 3] * v[(k + 1) % 3];
+  const FourDoubles x = row(0), y = row(1), z = row(2);
+  const FourDoubles tx = x.turned(), ty = y.turned(), tz = z.turned();
+  const FourDoubles cx = y * tz - ty * z, cy = z * tx - tz * x, cz = x * ty - tx * y;
+  // The last lane of a column is 0: the same numbers stand there on both sides.
+  const FourDoubles scale = FourDoubles::all(1 / (cx * tx.turned()).sum());
+  const auto all = [](double v) { return FourDoubles::all(v); };
+  const FourDoubles o = cx * (all(origin.x) - x.last()) + cy * (all(origin.y) - y.last()) +
+                        cz * (all(origin.z) - z.last());
+  const FourDoubles d = cx * all(direction.x) + cy * all(direction.y) + cz * all(direction.z);
+  return {to_float((o * scale).turned()), to_float((d * scale).turned()),
+          to_float(((abs(cx) + abs(cy) + abs(cz)) * abs(scale)).turned())};
+}
+
+/// The same for a map that is not regular (AffinePath).
+MappedRay map_irregular(const Affine3d& local_from_world, const Vec3d& direction,
+                        const Vec3d& origin) {
+  const Vec3d o = local_from_world.point(origin), d = local_from_world.vector(direction);
+  float stretch[4] = {};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double* row = local_from_world.m[k];
+    stretch[k] = static_cast<float>(std::abs(row[0]) + std::abs(row[1]) + std::abs(row[2]));
   }
-  const double scale =
-      1 / (m[0][0] * column[0][0] + m[0][1] * column[0][1] + m[0][2] * column[0][2]);
-  const double o[3] = {origin.x - m[0][3], origin.y - m[1][3], origin.z - m[2][3]};
-  for (int k = 0; k < 3; ++k) {
-    const double cx = column[0][k], cy = column[1][k], cz = column[2][k];
-    ray.origin[k] = static_cast<float>((cx * o[0] + cy * o[1] + cz * o[2]) * scale);
-    ray.direction[k] =
-        static_cast<float>((cx * direction.x + cy * direction.y + cz * direction.z) * scale);
-    ray.stretch[k] =
-        static_cast<float>((std::abs(cx) + std::abs(cy) + std::abs(cz)) * std::abs(scale));
-  }
-#endif
-  return ray;
+  return {to_float(FourDoubles::load(std::array{o.x, o.y, o.z, 0.0}.data())),
+          to_float(FourDoubles::load(std::array{d.x, d.y, d.z, 0.0}.data())),
+          FourFloats::load(stretch)};
+}
+
+HWY_INLINE FourFloats four_of(const Vec3f& v) {
+  const float f[4] = {v.x, v.y, v.z, 0};
+  return FourFloats::load(f);
 }
 
 /// One ray on its way through a model.
 class RayInModel {
  public:
-  RayInModel(const RayModel& model, const WorldRay& ray, const KeyInterval& at, RayAim aim,
+  RayInModel(const RayModel& model, const ScaledRay& ray, const KeyInterval& at, RayAim aim,
              RayHit& hit)
-      : model_(model), ray_(ray), at_(at), aim_(aim), hit_(hit), tester_(ray, hit) {
+      : model_(model), ray_(ray.ray), at_(at), aim_(aim), hit_(hit), tester_(ray.ray, hit) {
     for (std::size_t k = 0; k < 3; ++k) {
-      origin_[k] = static_cast<float>(ray.origin[k]);
-      direction_[k] = static_cast<float>(ray.direction[k]);
+      origin_[k] = static_cast<float>(ray_.origin[k]);
+      direction_[k] = static_cast<float>(ray_.direction[k]);
     }
     reach_ = std::abs(model.center.x - origin_[0]) + std::abs(model.center.y - origin_[1]) +
              std::abs(model.center.z - origin_[2]) + model.diagonal;
@@ -389,37 +389,29 @@ class RayInModel {
 
   void trace(std::uint32_t segment) {
     trees_ = model_.trees + std::size_t{segment} * model_.clusters;
-    if (!enter_model()) return;
+    const FourFloats origin = FourFloats::load(origin_), s = FourFloats::all(at_.s);
+    const KeyBox &from = model_.key_boxes[at_.key0], &to = model_.key_boxes[at_.key1];
+    const auto side = [&](const float (&a)[4], const float (&b)[4]) {
+      return FourFloats::load(a) + (FourFloats::load(b) - FourFloats::load(a)) * s;
+    };
+    const FourFloats lo = side(from.lo, to.lo), hi = side(from.hi, to.hi);
+    // No box of this time reaches farther.
+    const FourFloats size = abs(origin) + max(abs(lo), abs(hi));
+    const BoxRay world(origin, FourFloats::load(direction_),
+                       FourFloats::all(slack_) + size * FourFloats::all(0x1p-19f),
+                       std::min(0.0f, ray_.t_min));
+    const FourFloats inverse = FourFloats::load(world.inverse);
+    float near[4], far[4];
+    ((if_negative(inverse, hi, lo) - FourFloats::load(world.near)) * inverse).store(near);
+    ((if_negative(inverse, lo, hi) - FourFloats::load(world.far)) * inverse).store(far);
+    const float enter = std::max({world.t_begin, near[0], near[1], near[2]});
+    if (!(enter <= std::min({hit_.t, far[0], far[1], far[2]}))) return;
     set_filter();
-    walk_top();
+    walk_top(world);
   }
 
  private:
   bool finished() const { return aim_ == RayAim::kAny && hit_.triangle != kNoHit; }
-
-  /// Prepares the ray for the world's boxes; whether it enters the model's at its time.
-  bool enter_model() {
-    const Aabb &from = model_.key_boxes[at_.key0], &to = model_.key_boxes[at_.key1];
-    float near = std::min(0.0f, ray_.t_min), far = hit_.t;
-    world_.t_begin = near;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const float d = direction_[k];
-      const float inverse = 1 / (std::abs(d) < kShortest ? std::copysign(kShortest, d) : d);
-      const float lo = from.lo[k] + (to.lo[k] - from.lo[k]) * at_.s;
-      const float hi = from.hi[k] + (to.hi[k] - from.hi[k]) * at_.s;
-      // No box of this time reaches farther.
-      const float size = std::abs(origin_[k]) + std::max(std::abs(lo), std::abs(hi));
-      const float slack = slack_ + size * 0x1p-19f;
-      world_.inverse[k] = inverse;
-      world_.origin_for_low[k] = origin_[k] + slack;
-      world_.origin_for_high[k] = origin_[k] - slack;
-      const float a = (lo - world_.origin_for_low[k]) * inverse,
-                  b = (hi - world_.origin_for_high[k]) * inverse;
-      near = std::max(near, std::min(a, b));
-      far = std::min(far, std::max(a, b));
-    }
-    return near <= far;
-  }
 
   void set_filter() {
     std::size_t along = 0;
@@ -438,10 +430,10 @@ class RayInModel {
                                                        : std::numeric_limits<float>::infinity();
   }
 
-  void walk_top() {
+  void walk_top(const BoxRay& world) {
     using Tag = hn::CappedTag<float, kTopWidth>;
     const Tag d;
-    const LaneRay<Tag> ray(d, world_);
+    const LaneRay<Tag> ray(d, world);
     const std::size_t nodes = model_.top_nodes;
     const TopBoxes* from = model_.top_boxes + nodes * at_.key0;
     const TopBoxes* to = model_.top_boxes + nodes * at_.key1;
@@ -486,8 +478,12 @@ class RayInModel {
 
   void enter_cluster(std::uint32_t c) {
     const RayTree& tree = trees_[c];
-    BoxRay local;
-    set_local(c, tree.bounds, local);
+    const MappedRay mapped = map_into(c);
+    const FourFloats size = FourFloats::load(tree.size);
+    const BoxRay local(mapped.origin, mapped.direction,
+                       mapped.stretch * FourFloats::all(slack_) +
+                           (abs(mapped.origin) + size) * FourFloats::all(0x1p-19f),
+                       std::min(0.0f, ray_.t_min));
     RayInTree ray(local, aim_, hit_);
     walk_bvh(tree.nodes, ray, [&](std::uint32_t block) {
       const RayBlock* b = tree.blocks + block;
@@ -496,28 +492,20 @@ class RayInModel {
     });
   }
 
-  /// The ray in the cluster's basis.
-  void set_local(std::uint32_t c, const Aabb& bounds, BoxRay& local) const {
+  /// The ray in a cluster's basis.
+  HWY_INLINE MappedRay map_into(std::uint32_t c) const {
     const std::size_t clusters = model_.clusters;
     const std::size_t a = at_.key0 * clusters + c, b = at_.key1 * clusters + c;
     const std::uint8_t needed = at_.key0 == at_.key1 ? kRegularKey : kRegularInterval;
-    if ((model_.map_kinds[a] & needed) == 0) {
-      local = make_box_ray(
-          ray_, interpolate(model_.local_from_world[a], model_.local_from_world[b], at_.s), bounds,
-          static_cast<double>(slack_));
-      return;
+    if (HWY_LIKELY((model_.map_kinds[a] & needed) != 0)) {
+      MappedRay ray = map_ray(model_.key_maps[a], model_.key_maps[b], at_.s, ray_.direction,
+                              ray_.origin - to_double(model_.center));
+      ray.origin = ray.origin + four_of(model_.local_centers[c]);
+      return ray;
     }
-    const MappedRay mapped = map_ray(model_.key_maps[a], model_.key_maps[b], at_.s, ray_.direction,
-                                     ray_.origin - to_double(model_.center));
-    for (std::size_t k = 0; k < 3; ++k) {
-      const float o = mapped.origin[k] + model_.local_centers[c][k], d = mapped.direction[k];
-      const float size = std::abs(o) + std::max(std::abs(bounds.lo[k]), std::abs(bounds.hi[k]));
-      const float slack = mapped.stretch[k] * slack_ + size * 0x1p-19f;
-      local.origin_for_low[k] = o + slack;
-      local.origin_for_high[k] = o - slack;
-      local.inverse[k] = 1 / (std::abs(d) < kShortest ? std::copysign(kShortest, d) : d);
-    }
-    local.t_begin = world_.t_begin;
+    return map_irregular(
+        interpolate(model_.local_from_world[a], model_.local_from_world[b], at_.s), ray_.direction,
+        ray_.origin);
   }
 
   HWY_NOINLINE void test_block(const RayBlock& block) {
@@ -574,7 +562,6 @@ class RayInModel {
     }
   }
 
-  static constexpr float kShortest = 1e-30f;
   static constexpr std::size_t kMaxTopDepth = 9;  // 16^8 clusters
 
   const RayModel& model_;
@@ -585,15 +572,18 @@ class RayInModel {
   RayTester tester_;
   const RayTree* trees_ = nullptr;
   VertexSource vertices_{nullptr, nullptr, 0};
-  float origin_[3], direction_[3];
-  float reach_, slack_;
-  BoxRay world_;
+  alignas(16) float origin_[4] = {}, direction_[4] = {0, 0, 0, 1};
+  float reach_, slack_;  ///< no less than any distance to the model, and what boxes give way by
   float image_[3][3], tolerance_;  ///< rows of the map into the image, and R
 };
 
-void TraceRay(const RayModel& model, const WorldRay& ray, const KeyInterval& at,
-              std::uint32_t segment, RayAim aim, RayHit& hit) {
-  RayInModel(model, ray, at, aim, hit).trace(segment);
+QueryHit TraceRay(const RayModel& model, const QueryRay& ray, const KeyInterval& at,
+                  std::uint32_t segment, RayAim aim) {
+  const ScaledRay scaled(ray);
+  if (!scaled.usable) return {};
+  RayHit hit = scaled.nothing_yet();
+  RayInModel(model, scaled, at, aim, hit).trace(segment);
+  return scaled.in_callers_lengths(hit);
 }
 
 void TestBlocks(const WorldRay& ray, std::span<const TriangleBlock> blocks,
@@ -618,36 +608,9 @@ namespace mdk {
 HWY_EXPORT(TraceRay);
 HWY_EXPORT(TestBlocks);
 
-BoxRay make_box_ray(const WorldRay& world, const Affine3d& local_from_world, const Aabb& bounds,
-                    double world_slack) {
-  const Vec3d local_origin = local_from_world.point(world.origin);
-  const Vec3d local_direction = local_from_world.vector(world.direction);
-  const double longest = std::max(
-      {std::abs(local_direction.x), std::abs(local_direction.y), std::abs(local_direction.z)});
-  // A component so small moves the ray by less than the slack on its way to anything; kept from
-  // zero, its inverse is finite and no product is without a value.
-  const double shortest = std::max(longest * 0x1p-40, 1e-30);
-  BoxRay ray;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const double* row = local_from_world.m[k];
-    const double stretch = std::abs(row[0]) + std::abs(row[1]) + std::abs(row[2]);
-    const double size =
-        std::abs(local_origin[k]) + std::max(std::abs(static_cast<double>(bounds.lo[k])),
-                                             std::abs(static_cast<double>(bounds.hi[k])));
-    const double slack = stretch * world_slack + size * 0x1p-19;
-    ray.origin_for_low[k] = static_cast<float>(local_origin[k] + slack);
-    ray.origin_for_high[k] = static_cast<float>(local_origin[k] - slack);
-    const double component = local_direction[k];
-    ray.inverse[k] = static_cast<float>(
-        1 / (std::abs(component) < shortest ? std::copysign(shortest, component) : component));
-  }
-  ray.t_begin = std::min(0.0f, world.t_min);
-  return ray;
-}
-
-void trace_ray(const RayModel& model, const WorldRay& ray, const KeyInterval& at,
-               std::uint32_t segment, RayAim aim, RayHit& hit) {
-  HWY_DYNAMIC_DISPATCH(TraceRay)(model, ray, at, segment, aim, hit);
+QueryHit trace_ray(const RayModel& model, const QueryRay& ray, const KeyInterval& at,
+                   std::uint32_t segment, RayAim aim) {
+  return HWY_DYNAMIC_DISPATCH(TraceRay)(model, ray, at, segment, aim);
 }
 
 void test_blocks(const WorldRay& ray, std::span<const TriangleBlock> blocks,
