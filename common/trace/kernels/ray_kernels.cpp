@@ -1,28 +1,7 @@
-// The triangle test of single rays, in double. With corners a, b, c seen from the ray's origin, the
-// weight of c at the direction d is ((b - a) x (b + a)) . d, exactly negated when a and b change
-// places: two triangles that share an edge agree on which side the ray passes.
-//
-//     hit where the three weights have one sign, each give or take its rounding: also a ray that
-//     passes a vertex exactly, where all signs are rounding, hits one of the triangles around it
-//     p = (w_a a + w_b b + w_c c) / (w_a + w_b + w_c)      weights of the wrong sign count as 0, so
-//                                                          p is on the triangle in any case
-//     t = p.d / d.d                                        and p must lie close to the ray
-//
-// The last clause does nothing for triangles of sane shape. For slivers, whose weights are all
-// rounding, it keeps hits where any box around the triangle shows them.
-//
-// In float, triangles are rejected before that. With the ray along an axis of the image (x, y), the
-// origin at (0, 0), an edge's weight is a_x b_y - a_y b_x. Let g be no less than the distance of any
-// point of the model from the origin, m the largest |x|, |y| of the corners. A hit has a point of the
-// triangle within 2^-20 g of the ray, so within sqrt(2) 2^-20 g of (0, 0) along x and along y, which
-// moves a weight by 1.42 * 2^-18 g m; rounding the corners to 6 * 2^-24 g moves it by 1.5 * 2^-20 g m,
-// and the products round by 2^-21 g m: in all less than R m + R^2, R = 1.25 * 2^-17 g. So there is no
-// hit where one weight is past R m + R^2 and another below its negative; nor where all corners lie
-// beyond the hit so far, or before t_min, by more than R.
+// How a single ray goes through a model at a time of its own, or through one that was posed.
 #include "common/trace/kernels/ray_kernels.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #undef HWY_TARGET_INCLUDE
@@ -30,410 +9,82 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 // after highway.h
-#include "common/simd/four-inl.h"
+#include "common/trace/kernels/ray_boxes-inl.h"
+#include "common/trace/kernels/ray_test-inl.h"
 #include "common/trace/kernels/walk-inl.h"
 #include "common/trace/query_keys.h"
-#include "common/trace/scaled_ray.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace mdk {
 namespace HWY_NAMESPACE {
 namespace rays {
 
-using DoubleTag = hn::CappedTag<double, kBvhWidth>;
-using DoubleVec = hn::Vec<DoubleTag>;
-using DoublePoints = Points<DoubleTag>;
-
-// --- the test in double ---
-
-struct Weight {
-  DoubleVec value;
-  DoubleVec error;  ///< no less than what rounding may have done to the value
-};
-
-/// ((b - a) x (b + a)) . d; `rounding` is kRounding times the largest component of d.
-HWY_INLINE Weight edge_weight(const DoublePoints& a, const DoublePoints& b, const DoublePoints& d,
-                              DoubleVec rounding) {
-  const DoublePoints u = b - a, v = b + a;
-  return {dot(cross(u, v), d), hn::Mul(hn::Mul(sum_of_sizes(u), sum_of_sizes(v)), rounding)};
-}
-
-/// About twenty roundings of 2^-53 each, relative to the sizes of all factors.
-constexpr double kRounding = 0x1p-48;
-
-/// One ray against triangles.
-class RayTester {
- public:
-  RayTester(const WorldRay& ray, RayHit& hit)
-      : ray_(ray),
-        hit_(hit),
-        direction_square_(dot(ray.direction, ray.direction)),
-        rounding_(kRounding * std::max({std::abs(ray.direction.x), std::abs(ray.direction.y),
-                                        std::abs(ray.direction.z)})) {}
-
-  /// `count` triangles, not more than a vector holds; corner k of triangle i is vertex corner[k][i].
-  /// Places up to the lanes of a vector must be vertices, too.
-  void test(const std::uint32_t* const (&corner)[3], const std::uint32_t* triangle,
-            std::size_t count, const VertexSource& vertices) {
-    const auto points = [&](const std::uint32_t* index) {
-      const DoubleTag d;
-      alignas(64) double x[kBvhWidth], y[kBvhWidth], z[kBvhWidth];
-      for (std::size_t i = 0; i < hn::Lanes(d); ++i) {
-        const Vec3d v = to_double(vertices.position(index[i])) - ray_.origin;
-        x[i] = v.x;
-        y[i] = v.y;
-        z[i] = v.z;
-      }
-      return DoublePoints{hn::Load(d, x), hn::Load(d, y), hn::Load(d, z)};
-    };
-    test_lanes(points(corner[0]), points(corner[1]), points(corner[2]), triangle, count);
-  }
-
-  /// One triangle, by the same operations one after another.
-  void test_one(const Vec3f& corner_a, const Vec3f& corner_b, const Vec3f& corner_c,
-                std::uint32_t triangle) {
-    const Vec3d a = to_double(corner_a) - ray_.origin, b = to_double(corner_b) - ray_.origin,
-                c = to_double(corner_c) - ray_.origin;
-    const Vec3d& d = ray_.direction;
-    const auto size = [](const Vec3d& v) { return std::abs(v.x) + std::abs(v.y) + std::abs(v.z); };
-    const auto weight = [&](const Vec3d& p, const Vec3d& q, double& error) {
-      const Vec3d u = q - p, v = q + p;
-      error = size(u) * size(v) * rounding_;
-      return dot(cross(u, v), d);
-    };
-    double ea, eb, ec;
-    const double wa = weight(b, c, ea), wb = weight(c, a, eb), wc = weight(a, b, ec);
-    const double side = std::copysign(1.0, wa + wb + wc);
-    if (!(wa * side >= -ea && wb * side >= -eb && wc * side >= -ec)) return;
-    const auto share_of = [&](double w) { return w * side > 0 ? w * side : 0.0; };
-    const double sa = share_of(wa), sb = share_of(wb), sc = share_of(wc);
-    const double total = sa + sb + sc, share = 1.0 / total;
-    const Vec3d p = (a * sa + b * sb + c * sc) * share;
-    const double t = dot(p, d) / direction_square_;
-    const Vec3d off = p - d * t;
-    if (!(dot(off, off) <= dot(p, p) * 0x1p-40 && total > 0)) return;
-    keep({static_cast<float>(t), triangle, static_cast<float>(sb * share),
-          static_cast<float>(sc * share)});
-  }
-
- private:
-  void keep(const RayHit& hit) {
-    const bool is_closer = hit.t < hit_.t || (hit.t == hit_.t && hit.triangle < hit_.triangle);
-    if (hit.t > ray_.t_min && is_closer) hit_ = hit;
-  }
-
-  HWY_INLINE void test_lanes(const DoublePoints& a, const DoublePoints& b, const DoublePoints& c,
-                             const std::uint32_t* triangles, std::size_t count) {
-    const DoubleTag d;
-    const DoublePoints direction = broadcast(d, ray_.direction);
-    const auto rounding = hn::Set(d, rounding_);
-    const Weight wa = edge_weight(b, c, direction, rounding),
-                 wb = edge_weight(c, a, direction, rounding),
-                 wc = edge_weight(a, b, direction, rounding);
-    const auto zero = hn::Zero(d);
-    const auto side = hn::CopySign(hn::Set(d, 1.0), hn::Add(hn::Add(wa.value, wb.value), wc.value));
-    const auto is_inner = [&](const Weight& w) {
-      return hn::Ge(hn::Mul(w.value, side), hn::Neg(w.error));
-    };
-    const auto inside = hn::And(hn::And(is_inner(wa), is_inner(wb)), is_inner(wc));
-    if (hn::AllFalse(d, inside)) return;
-
-    const auto share_of = [&](const Weight& w) { return hn::Max(hn::Mul(w.value, side), zero); };
-    const auto sa = share_of(wa), sb = share_of(wb), sc = share_of(wc);
-    const auto total = hn::Add(hn::Add(sa, sb), sc);
-    const auto share = hn::Div(hn::Set(d, 1.0), total);
-    const DoublePoints p = scaled(scaled(a, sa) + scaled(b, sb) + scaled(c, sc), share);
-    const auto t = hn::Div(dot(p, direction), hn::Set(d, direction_square_));
-    const DoublePoints off = p - scaled(direction, t);
-    const auto close = hn::Le(dot(off, off), hn::Mul(dot(p, p), hn::Set(d, 0x1p-40)));
-    // Written so that a corner that is not a number fails it.
-    const auto hit = hn::And(inside, hn::And(close, hn::Gt(total, zero)));
-    std::uint32_t lanes = mask_bits(d, hit) & ((1u << count) - 1);
-    if (lanes == 0) return;
-
-    alignas(64) double depth[kBvhWidth], bary1[kBvhWidth], bary2[kBvhWidth];
-    hn::Store(t, d, depth);
-    hn::Store(hn::Mul(sb, share), d, bary1);
-    hn::Store(hn::Mul(sc, share), d, bary2);
-    for (; lanes != 0; lanes &= lanes - 1) {
-      const auto i = static_cast<std::size_t>(__builtin_ctz(lanes));
-      keep({static_cast<float>(depth[i]), triangles[i], static_cast<float>(bary1[i]),
-            static_cast<float>(bary2[i])});
-    }
-  }
-
-  const WorldRay& ray_;
-  RayHit& hit_;
-  double direction_square_, rounding_;
-};
-
-// --- boxes ---
-
-/// A component so small moves the ray by less than any slack on its way to anything; kept from zero,
-/// its inverse is finite and no product is without a value.
-constexpr float kShortest = 1e-30f;
-
-/// A ray against boxes of one basis: per axis where the plane that it meets first is seen from, and
-/// the last, each plane being moved outward by a slack.
-struct BoxRay {
-  alignas(16) float near[4], far[4], inverse[4];
-  std::uint32_t near_row[3];  ///< in rows of planes: low x, high x, low y...
-  float t_begin;              ///< what ends before it is not entered
-
-  HWY_INLINE BoxRay(const FourFloats& origin, const FourFloats& direction, const FourFloats& slack,
-                    float begin)
-      : t_begin(begin) {
-    const FourFloats one = FourFloats::all(1);
-    const FourFloats inverted =
-        one / with_sign(max(abs(direction), FourFloats::all(kShortest)), direction);
-    const FourFloats for_low = origin + slack, for_high = origin - slack;
-    if_negative(inverted, for_high, for_low).store(near);
-    if_negative(inverted, for_low, for_high).store(far);
-    inverted.store(inverse);
-    const std::uint32_t falls = inverted.negative();
-    for (std::uint32_t k = 0; k < 3; ++k) near_row[k] = 2 * k + (falls >> k & 1u);
-  }
-};
-
-/// The same with its numbers in every lane.
-template <class D>
-class LaneRay {
- public:
-  HWY_INLINE LaneRay(D d, const BoxRay& ray) : t_begin_(hn::Set(d, ray.t_begin)) {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      near_row_[axis] = ray.near_row[axis];
-      near_[axis] = hn::Set(d, ray.near[axis]);
-      far_[axis] = hn::Set(d, ray.far[axis]);
-      inverse_[axis] = hn::Set(d, ray.inverse[axis]);
-    }
-  }
-
-  /// Bits of the boxes entered before t_max; where, into `order`. row(i) is a vector of planes.
-  template <class Row>
-  HWY_INLINE std::uint32_t enter(D d, float t_max, float* order, const Row& row) const {
-    auto near = t_begin_, far = hn::Set(d, t_max);
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      near = hn::Max(near, hn::Mul(hn::Sub(row(near_row_[axis]), near_[axis]), inverse_[axis]));
-      far = hn::Min(far,
-                    hn::Mul(hn::Sub(row(near_row_[axis] ^ 1u), far_[axis]), inverse_[axis]));
-    }
-    hn::Store(near, d, order);
-    return mask_bits(d, hn::Le(near, far));
-  }
-
- private:
-  hn::Vec<D> near_[3], far_[3], inverse_[3], t_begin_;
-  std::uint32_t near_row_[3];
-};
-
-/// A ray on its way down one cluster's tree (walk-inl.h).
-class RayInTree {
- public:
-  HWY_INLINE RayInTree(const BoxRay& ray, RayAim aim, const RayHit& hit)
-      : ray_(Tag(), ray), aim_(aim), hit_(hit) {}
-
-  HWY_INLINE std::uint32_t enter(const WideBvhNode& node, float (&order)[kBvhWidth]) const {
-    const Tag d;
-    std::uint32_t entered = 0;
-    for (std::size_t first = 0; first < kBvhWidth; first += hn::Lanes(d))
-      entered |= ray_.enter(d, hit_.t, order + first,
-                            [&](std::uint32_t row) {
-                              return hn::Load(d, node.bounds[row] + first);
-                            })
-                 << first;
-    return entered & ((1u << node.count) - 1);
-  }
-  bool is_past(float order) const { return order > hit_.t; }
-  bool finished() const { return aim_ == RayAim::kAny && hit_.triangle != kNoHit; }
-
- private:
-  using Tag = hn::CappedTag<float, kBvhWidth>;
-  LaneRay<Tag> ray_;
-  RayAim aim_;
-  const RayHit& hit_;
-};
-
-// --- blocks ---
-
-/// Sixteen numbers, of which lanes pick some.
-class Sixteen {
- public:
-  static constexpr std::size_t kParts = 16 / hn::MaxLanes(FloatTag());
-
-  HWY_INLINE void set(std::size_t part, FloatVec values) {
-    if constexpr (kParts <= 2) {
-      part_[part] = values;
-    } else {
-      hn::Store(values, FloatTag(), stored_ + part * hn::Lanes(FloatTag()));
-    }
-  }
-  using Indices = hn::Vec<hn::RebindToSigned<FloatTag>>;
-  HWY_INLINE FloatVec pick(Indices index) const {
-    const FloatTag d;
-    const hn::RebindToSigned<FloatTag> di;
-    if constexpr (kParts == 1) {
-      return hn::TableLookupLanes(part_[0], hn::IndicesFromVec(d, index));
-    } else if constexpr (kParts == 2) {
-      const auto seven = hn::Set(di, 7);
-      const auto place = hn::IndicesFromVec(d, hn::And(index, seven));
-      return hn::IfThenElse(hn::RebindMask(d, hn::Gt(index, seven)),
-                            hn::TableLookupLanes(part_[1], place),
-                            hn::TableLookupLanes(part_[0], place));
-    } else {
-      return hn::GatherIndex(d, stored_, index);
-    }
-  }
-
- private:
-  FloatVec part_[kParts <= 2 ? kParts : 1];  // in use where a vector can look them up
-  alignas(64) float stored_[kParts <= 2 ? 1 : 16];
-};
-
-#if HWY_TARGET != HWY_SCALAR
-/// In every four lanes a vertex and a lane more: vertex[0], vertex[4], vertex[8]...
-template <class D>
-HWY_INLINE hn::Vec<D> every_fourth(D d, const std::uint32_t* vertex, const Vec3f* positions) {
-  if constexpr (hn::MaxLanes(d) == 4) {
-    return hn::LoadU(d, &positions[vertex[0]].x);
-  } else {
-    const hn::Half<D> half;
-    return hn::Combine(d, every_fourth(half, vertex + hn::Lanes(half), positions),
-                       every_fourth(half, vertex, positions));
-  }
-}
-#endif
-
-/// As many vertices as a vector holds, at the source's time.
-template <class D>
-HWY_INLINE Points<D> pose(D d, const std::uint32_t* vertex, const VertexSource& source) {
-#if HWY_TARGET == HWY_SCALAR
-  const Vec3f p = source.position(vertex[0]);
-  return {hn::Set(d, p.x), hn::Set(d, p.y), hn::Set(d, p.z)};
-#else
-  const auto s = hn::Set(d, source.s);
-  const auto row = [&](std::size_t i) {
-    const auto from = every_fourth(d, vertex + i, source.from);
-    const auto to = every_fourth(d, vertex + i, source.to);
-    return hn::Add(from, hn::Mul(hn::Sub(to, from), s));
-  };
-  const auto row0 = row(0), row1 = row(1), row2 = row(2), row3 = row(3);
-  const auto xy02 = hn::InterleaveLower(d, row0, row2), xy13 = hn::InterleaveLower(d, row1, row3),
-             z02 = hn::InterleaveUpper(d, row0, row2), z13 = hn::InterleaveUpper(d, row1, row3);
-  return {hn::InterleaveLower(d, xy02, xy13), hn::InterleaveUpper(d, xy02, xy13),
-          hn::InterleaveLower(d, z02, z13)};
-#endif
-}
-
-/// The ray by the inverse of a map that is interpolated between two keys, without its origins.
-struct MappedRay {
-  FourFloats origin, direction;
-  FourFloats stretch;  ///< what the inverse makes of a box of half side 1, along each axis
-};
-
-/// With rows X, Y, Z of the map's linear part, its inverse has the columns Y x Z, Z x X and X x Y,
-/// over X . (Y x Z). They stand here in the order z, x, y.
-HWY_INLINE MappedRay map_ray(const KeyMap& from, const KeyMap& to, float s, const Vec3d& direction,
-                             const Vec3d& origin) {
-  const FourDoubles share = FourDoubles::all(static_cast<double>(s));
-  const auto row = [&](int j) {
-    const FourDoubles a = to_double(FourFloats::load(from.m[j])),
-                      b = to_double(FourFloats::load(to.m[j]));
-    return a + (b - a) * share;
-  };
-  const FourDoubles x = row(0), y = row(1), z = row(2);
-  const FourDoubles tx = x.turned(), ty = y.turned(), tz = z.turned();
-  const FourDoubles cx = y * tz - ty * z, cy = z * tx - tz * x, cz = x * ty - tx * y;
-  // The last lane of a column is 0: the same numbers stand there on both sides.
-  const FourDoubles scale = FourDoubles::all(1 / (cx * tx.turned()).sum());
-  const auto all = [](double v) { return FourDoubles::all(v); };
-  const FourDoubles o = cx * (all(origin.x) - x.last()) + cy * (all(origin.y) - y.last()) +
-                        cz * (all(origin.z) - z.last());
-  const FourDoubles d = cx * all(direction.x) + cy * all(direction.y) + cz * all(direction.z);
-  return {to_float((o * scale).turned()), to_float((d * scale).turned()),
-          to_float(((abs(cx) + abs(cy) + abs(cz)) * abs(scale)).turned())};
-}
-
-/// The same for a map that is not regular (AffinePath).
-MappedRay map_irregular(const Affine3d& local_from_world, const Vec3d& direction,
-                        const Vec3d& origin) {
-  const Vec3d o = local_from_world.point(origin), d = local_from_world.vector(direction);
-  float stretch[4] = {};
-  for (std::size_t k = 0; k < 3; ++k) {
-    const double* row = local_from_world.m[k];
-    stretch[k] = static_cast<float>(std::abs(row[0]) + std::abs(row[1]) + std::abs(row[2]));
-  }
-  return {to_float(FourDoubles::load(std::array{o.x, o.y, o.z, 0.0}.data())),
-          to_float(FourDoubles::load(std::array{d.x, d.y, d.z, 0.0}.data())),
-          FourFloats::load(stretch)};
-}
-
 HWY_INLINE FourFloats four_of(const Vec3f& v) {
   const float f[4] = {v.x, v.y, v.z, 0};
   return FourFloats::load(f);
 }
+
+/// All blocks of a leaf.
+template <class Vertices>
+HWY_INLINE void test_leaf(RayAndBlocks& ray, const RayBlock* block, const Vertices& vertices) {
+  ray.test(*block, vertices);
+  while (block->has_next) ray.test(*++block, vertices);
+}
+
+/// Vertices between two keys, which are decoded when the first block asks for one.
+class KeyVertices {
+ public:
+  KeyVertices(const KeyPoses& poses, const KeyInterval& at) : poses_(poses), at_(at) {}
+
+  template <class D>
+  HWY_INLINE Points<D> points(D d, const RayBlock& block, std::size_t first) const {
+    if (HWY_UNLIKELY(source_.from == nullptr))
+      source_ = {poses_.key(at_.key0), poses_.key(at_.key1), at_.s};
+    return pose(d, block.vertex + first, source_);
+  }
+  HWY_INLINE Vec3f position(const RayBlock& block, std::size_t place) const {
+    return source_.position(block.vertex[place]);
+  }
+
+ private:
+  const KeyPoses& poses_;
+  const KeyInterval& at_;
+  mutable VertexSource source_{nullptr, nullptr, 0};
+};
 
 /// One ray on its way through a model.
 class RayInModel {
  public:
   RayInModel(const RayModel& model, const ScaledRay& ray, const KeyInterval& at, RayAim aim,
              RayHit& hit)
-      : model_(model), ray_(ray.ray), at_(at), aim_(aim), hit_(hit), tester_(ray.ray, hit) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      origin_[k] = static_cast<float>(ray_.origin[k]);
-      direction_[k] = static_cast<float>(ray_.direction[k]);
-    }
-    reach_ = std::abs(model.center.x - origin_[0]) + std::abs(model.center.y - origin_[1]) +
-             std::abs(model.center.z - origin_[2]) + model.diagonal;
-    slack_ = reach_ * (1.25f * 0x1p-19f);
-  }
+      : model_(model),
+        at_(at),
+        ray_(ray, model.center, model.diagonal, aim, hit),
+        vertices_(*model.poses, at) {}
 
   void trace(std::uint32_t segment) {
     trees_ = model_.trees + std::size_t{segment} * model_.clusters;
-    const FourFloats origin = FourFloats::load(origin_), s = FourFloats::all(at_.s);
+    const FourFloats s = FourFloats::all(at_.s);
     const KeyBox &from = model_.key_boxes[at_.key0], &to = model_.key_boxes[at_.key1];
     const auto side = [&](const float (&a)[4], const float (&b)[4]) {
       return FourFloats::load(a) + (FourFloats::load(b) - FourFloats::load(a)) * s;
     };
     const FourFloats lo = side(from.lo, to.lo), hi = side(from.hi, to.hi);
     // No box of this time reaches farther.
-    const FourFloats size = abs(origin) + max(abs(lo), abs(hi));
-    const BoxRay world(origin, FourFloats::load(direction_),
-                       FourFloats::all(slack_) + size * FourFloats::all(0x1p-19f),
-                       std::min(0.0f, ray_.t_min));
-    const FourFloats inverse = FourFloats::load(world.inverse);
-    float near[4], far[4];
-    ((if_negative(inverse, hi, lo) - FourFloats::load(world.near)) * inverse).store(near);
-    ((if_negative(inverse, lo, hi) - FourFloats::load(world.far)) * inverse).store(far);
-    const float enter = std::max({world.t_begin, near[0], near[1], near[2]});
-    if (!(enter <= std::min({hit_.t, far[0], far[1], far[2]}))) return;
-    set_filter();
+    const FourFloats size = abs(ray_.origin()) + max(abs(lo), abs(hi));
+    const BoxRay world(ray_.origin(), ray_.direction(),
+                       FourFloats::all(ray_.slack()) + size * FourFloats::all(0x1p-19f),
+                       std::min(0.0f, ray_.ray().t_min));
+    if (!world.enters(lo, hi, ray_.hit().t)) return;
+    ray_.prepare();
     walk_top(world);
   }
 
  private:
-  bool finished() const { return aim_ == RayAim::kAny && hit_.triangle != kNoHit; }
-
-  void set_filter() {
-    std::size_t along = 0;
-    for (std::size_t k = 1; k < 3; ++k)
-      if (std::abs(direction_[k]) > std::abs(direction_[along])) along = k;
-    const std::size_t x = (along + 1) % 3, y = (along + 2) % 3;
-    const float inverse = 1 / direction_[along];
-    for (auto& row : image_) row[0] = row[1] = row[2] = 0;
-    image_[0][x] = 1;
-    image_[0][along] = -direction_[x] * inverse;
-    image_[1][y] = 1;
-    image_[1][along] = -direction_[y] * inverse;
-    image_[2][along] = inverse;
-    // Out of this range, products in float might be lost: nothing is rejected then.
-    tolerance_ = reach_ > 0x1p-40f && reach_ < 0x1p60f ? reach_ * (1.25f * 0x1p-17f)
-                                                       : std::numeric_limits<float>::infinity();
-  }
-
   void walk_top(const BoxRay& world) {
     using Tag = hn::CappedTag<float, kTopWidth>;
     const Tag d;
-    const LaneRay<Tag> ray(d, world);
+    const LaneRay<Tag> lanes(d, world);
     const std::size_t nodes = model_.top_nodes;
     const TopBoxes* from = model_.top_boxes + nodes * at_.key0;
     const TopBoxes* to = model_.top_boxes + nodes * at_.key1;
@@ -444,7 +95,7 @@ class RayInModel {
       alignas(64) float order[kTopWidth];
       std::uint32_t entered = 0;
       for (std::size_t first = 0; first < kTopWidth; first += hn::Lanes(d))
-        entered |= ray.enter(d, hit_.t, order + first,
+        entered |= lanes.enter(d, ray_.hit().t, order + first,
                              [&](std::uint32_t row) {
                                const auto a = hn::Load(d, from[node].bounds[row] + first);
                                const auto b = hn::Load(d, to[node].bounds[row] + first);
@@ -466,13 +117,13 @@ class RayInModel {
     for (std::uint32_t i = 1; i <= model_.top_roots; ++i) open(model_.top_nodes - i);
     while (size > 0) {
       const WaitingChild next = stack[--size];
-      if (next.order > hit_.t) continue;
+      if (next.order > ray_.hit().t) continue;
       if (!next.child.is_leaf()) {
         open(next.child.index());
         continue;
       }
       enter_cluster(next.child.index());
-      if (finished()) return;
+      if (ray_.finished()) return;
     }
   }
 
@@ -481,14 +132,12 @@ class RayInModel {
     const MappedRay mapped = map_into(c);
     const FourFloats size = FourFloats::load(tree.size);
     const BoxRay local(mapped.origin, mapped.direction,
-                       mapped.stretch * FourFloats::all(slack_) +
+                       mapped.stretch * FourFloats::all(ray_.slack()) +
                            (abs(mapped.origin) + size) * FourFloats::all(0x1p-19f),
-                       std::min(0.0f, ray_.t_min));
-    RayInTree ray(local, aim_, hit_);
+                       std::min(0.0f, ray_.ray().t_min));
+    RayInTree ray(local, ray_.aim(), ray_.hit());
     walk_bvh(tree.nodes, ray, [&](std::uint32_t block) {
-      const RayBlock* b = tree.blocks + block;
-      test_block(*b);
-      while (b->has_next) test_block(*++b);
+      test_leaf(ray_, tree.blocks + block, vertices_);
     });
   }
 
@@ -498,83 +147,46 @@ class RayInModel {
     const std::size_t a = at_.key0 * clusters + c, b = at_.key1 * clusters + c;
     const std::uint8_t needed = at_.key0 == at_.key1 ? kRegularKey : kRegularInterval;
     if (HWY_LIKELY((model_.map_kinds[a] & needed) != 0)) {
-      MappedRay ray = map_ray(model_.key_maps[a], model_.key_maps[b], at_.s, ray_.direction,
-                              ray_.origin - to_double(model_.center));
+      MappedRay ray = map_ray(model_.key_maps[a], model_.key_maps[b], at_.s, ray_.ray().direction,
+                              ray_.ray().origin - to_double(model_.center));
       ray.origin = ray.origin + four_of(model_.local_centers[c]);
       return ray;
     }
     return map_irregular(
-        interpolate(model_.local_from_world[a], model_.local_from_world[b], at_.s), ray_.direction,
-        ray_.origin);
-  }
-
-  HWY_NOINLINE void test_block(const RayBlock& block) {
-    if (vertices_.from == nullptr)
-      vertices_ = {model_.poses->key(at_.key0), model_.poses->key(at_.key1), at_.s};
-    const FloatTag d;
-    Sixteen x, y, z, size;
-    const auto row_of = [&](const float (&row)[3], const Points<FloatTag>& p) {
-      return hn::MulAdd(hn::Set(d, row[0]), p.x,
-                        hn::MulAdd(hn::Set(d, row[1]), p.y, hn::Mul(hn::Set(d, row[2]), p.z)));
-    };
-    for (std::size_t part = 0; part < Sixteen::kParts; ++part) {
-      const Points<FloatTag> posed = pose(d, block.vertex + part * hn::Lanes(d), vertices_);
-      const Points<FloatTag> p{hn::Sub(posed.x, hn::Set(d, origin_[0])),
-                               hn::Sub(posed.y, hn::Set(d, origin_[1])),
-                               hn::Sub(posed.z, hn::Set(d, origin_[2]))};
-      const auto across = row_of(image_[0], p), down = row_of(image_[1], p);
-      x.set(part, across);
-      y.set(part, down);
-      z.set(part, row_of(image_[2], p));
-      size.set(part, hn::Max(hn::Abs(across), hn::Abs(down)));
-    }
-    const auto tolerance = hn::Set(d, tolerance_), square = hn::Mul(tolerance, tolerance);
-    std::uint32_t passed = 0;
-    for (std::size_t first = 0; first < block.count; first += hn::Lanes(d)) {
-      const hn::RebindToSigned<FloatTag> di;
-      const hn::Rebind<std::uint8_t, FloatTag> db;
-      const auto place = [&](std::size_t k) {
-        return hn::PromoteTo(di, hn::LoadU(db, block.corner[k] + first));
-      };
-      const auto a = place(0), b = place(1), c = place(2);
-      const auto ax = x.pick(a), ay = y.pick(a), bx = x.pick(b), by = y.pick(b), cx = x.pick(c),
-                 cy = y.pick(c);
-      const auto wa = hn::MulSub(bx, cy, hn::Mul(by, cx)), wb = hn::MulSub(cx, ay, hn::Mul(cy, ax)),
-                 wc = hn::MulSub(ax, by, hn::Mul(ay, bx));
-      const auto most = hn::Max(size.pick(a), hn::Max(size.pick(b), size.pick(c)));
-      const auto error = hn::MulAdd(most, tolerance, square);
-      const auto outside = hn::And(hn::Gt(hn::Max(wa, hn::Max(wb, wc)), error),
-                                   hn::Lt(hn::Min(wa, hn::Min(wb, wc)), hn::Neg(error)));
-      const auto az = z.pick(a), bz = z.pick(b), cz = z.pick(c);
-      const auto beyond = hn::Gt(hn::Min(az, hn::Min(bz, cz)), hn::Set(d, hit_.t + tolerance_));
-      const auto before =
-          hn::Lt(hn::Max(az, hn::Max(bz, cz)), hn::Set(d, ray_.t_min - tolerance_));
-      const auto rejected = hn::Or(outside, hn::Or(beyond, before));
-      passed |= (mask_bits(d, rejected) ^ ((1u << hn::Lanes(d)) - 1)) << first;
-    }
-    passed &= (1u << block.count) - 1;
-    for (; passed != 0; passed &= passed - 1) {
-      const auto lane = static_cast<std::size_t>(__builtin_ctz(passed));
-      const auto corner = [&](std::size_t k) {
-        return vertices_.position(block.vertex[block.corner[k][lane]]);
-      };
-      tester_.test_one(corner(0), corner(1), corner(2), block.triangle[lane]);
-    }
+        interpolate(model_.local_from_world[a], model_.local_from_world[b], at_.s),
+        ray_.ray().direction, ray_.ray().origin);
   }
 
   static constexpr std::size_t kMaxTopDepth = 9;  // 16^8 clusters
 
   const RayModel& model_;
-  const WorldRay& ray_;
   const KeyInterval& at_;
-  const RayAim aim_;
-  RayHit& hit_;
-  RayTester tester_;
   const RayTree* trees_ = nullptr;
-  VertexSource vertices_{nullptr, nullptr, 0};
-  alignas(16) float origin_[4] = {}, direction_[4] = {0, 0, 0, 1};
-  float reach_, slack_;  ///< no less than any distance to the model, and what boxes give way by
-  float image_[3][3], tolerance_;  ///< rows of the map into the image, and R
+  RayAndBlocks ray_;
+  KeyVertices vertices_;
+};
+
+/// The vertices of posed blocks.
+class PosedVertices {
+ public:
+  explicit PosedVertices(const PosedScene& scene) : scene_(scene) {}
+
+  template <class D>
+  HWY_INLINE Points<D> points(D d, const RayBlock& block, std::size_t first) const {
+    const PosedRayBlock& posed = of(block);
+    return {hn::Load(d, posed.x + first), hn::Load(d, posed.y + first),
+            hn::Load(d, posed.z + first)};
+  }
+  HWY_INLINE Vec3f position(const RayBlock& block, std::size_t place) const {
+    const PosedRayBlock& posed = of(block);
+    return {posed.x[place], posed.y[place], posed.z[place]};
+  }
+
+ private:
+  HWY_INLINE const PosedRayBlock& of(const RayBlock& block) const {
+    return scene_.posed[&block - scene_.blocks];
+  }
+  const PosedScene& scene_;
 };
 
 QueryHit TraceRay(const RayModel& model, const QueryRay& ray, const KeyInterval& at,
@@ -584,6 +196,51 @@ QueryHit TraceRay(const RayModel& model, const QueryRay& ray, const KeyInterval&
   RayHit hit = scaled.nothing_yet();
   RayInModel(model, scaled, at, aim, hit).trace(segment);
   return scaled.in_callers_lengths(hit);
+}
+
+QueryHit TracePosed(const PosedScene& scene, const QueryRay& ray, RayAim aim) {
+  const ScaledRay scaled(ray);
+  if (!scaled.usable) return {};
+  RayHit hit = scaled.nothing_yet();
+  RayAndBlocks traced(scaled, scene.center, scene.diagonal, aim, hit);
+  const FourFloats lo = FourFloats::load(scene.bounds.lo), hi = FourFloats::load(scene.bounds.hi);
+  const FourFloats size = abs(traced.origin()) + max(abs(lo), abs(hi));
+  const BoxRay world(traced.origin(), traced.direction(),
+                     FourFloats::all(traced.slack()) + size * FourFloats::all(0x1p-19f),
+                     std::min(0.0f, scaled.ray.t_min));
+  if (world.enters(lo, hi, hit.t)) {
+    traced.prepare();
+    const PosedVertices vertices(scene);
+    RayInTree in_tree(world, aim, hit);
+    walk_bvh(scene.nodes, in_tree,
+             [&](std::uint32_t block) { test_leaf(traced, scene.blocks + block, vertices); });
+  }
+  return scaled.in_callers_lengths(hit);
+}
+
+void PoseBlocks(std::span<const RayBlock> blocks, const VertexSource& source,
+                PosedRayBlock* posed, Aabb* boxes) {
+  const FloatTag d;
+  const auto infinity = hn::Set(d, std::numeric_limits<float>::infinity());
+  for (std::size_t b = 0; b < blocks.size(); ++b) {
+    Points<FloatTag> lo{infinity, infinity, infinity},
+        hi{hn::Neg(infinity), hn::Neg(infinity), hn::Neg(infinity)};
+    for (std::size_t first = 0; first < kBlockVertices; first += hn::Lanes(d)) {
+      const Points<FloatTag> p = pose(d, blocks[b].vertex + first, source);
+      store(d, p, posed[b].x + first, posed[b].y + first, posed[b].z + first);
+      const auto finite = hn::And(hn::Lt(hn::Abs(p.x), infinity),
+                                  hn::And(hn::Lt(hn::Abs(p.y), infinity),
+                                          hn::Lt(hn::Abs(p.z), infinity)));
+      const auto low = [&](auto v) { return hn::IfThenElse(finite, v, infinity); };
+      const auto high = [&](auto v) { return hn::IfThenElse(finite, v, hn::Neg(infinity)); };
+      lo = {hn::Min(lo.x, low(p.x)), hn::Min(lo.y, low(p.y)), hn::Min(lo.z, low(p.z))};
+      hi = {hn::Max(hi.x, high(p.x)), hn::Max(hi.y, high(p.y)), hn::Max(hi.z, high(p.z))};
+    }
+    const auto least = [&](auto v) { return hn::GetLane(hn::MinOfLanes(d, v)); };
+    const auto most = [&](auto v) { return hn::GetLane(hn::MaxOfLanes(d, v)); };
+    boxes[b] = {{least(lo.x), least(lo.y), least(lo.z)}, {most(hi.x), most(hi.y), most(hi.z)}};
+    if (boxes[b].empty()) boxes[b] = {{0, 0, 0}, {0, 0, 0}};
+  }
 }
 
 void TestBlocks(const WorldRay& ray, std::span<const TriangleBlock> blocks,
@@ -597,7 +254,7 @@ void TestBlocks(const WorldRay& ray, std::span<const TriangleBlock> blocks,
 }
 
 }  // namespace rays
-using rays::TestBlocks, rays::TraceRay;
+using rays::PoseBlocks, rays::TestBlocks, rays::TracePosed, rays::TraceRay;
 }  // namespace HWY_NAMESPACE
 }  // namespace mdk
 HWY_AFTER_NAMESPACE();
@@ -605,12 +262,23 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace mdk {
 
-HWY_EXPORT(TraceRay);
+HWY_EXPORT(PoseBlocks);
 HWY_EXPORT(TestBlocks);
+HWY_EXPORT(TracePosed);
+HWY_EXPORT(TraceRay);
 
 QueryHit trace_ray(const RayModel& model, const QueryRay& ray, const KeyInterval& at,
                    std::uint32_t segment, RayAim aim) {
   return HWY_DYNAMIC_DISPATCH(TraceRay)(model, ray, at, segment, aim);
+}
+
+QueryHit trace_posed(const PosedScene& scene, const QueryRay& ray, RayAim aim) {
+  return HWY_DYNAMIC_DISPATCH(TracePosed)(scene, ray, aim);
+}
+
+void pose_blocks(std::span<const RayBlock> blocks, const VertexSource& source,
+                 PosedRayBlock* posed, Aabb* boxes) {
+  HWY_DYNAMIC_DISPATCH(PoseBlocks)(blocks, source, posed, boxes);
 }
 
 void test_blocks(const WorldRay& ray, std::span<const TriangleBlock> blocks,

@@ -110,7 +110,27 @@ struct RayModel {
 QueryHit trace_ray(const RayModel& model, const QueryRay& ray, const KeyInterval& at,
                    std::uint32_t segment, RayAim aim);
 
-/// The same for blocks without a structure: every triangle is tested in double.
+/// Where the vertices of a block are at one time.
+struct alignas(64) PosedRayBlock {
+  float x[kBlockVertices], y[kBlockVertices], z[kBlockVertices];
+};
+/// `posed` and `boxes` have one for each block; behind the source's last vertices, 4 bytes may be
+/// read. A box holds the vertices that are finite; a triangle with another cannot be hit.
+void pose_blocks(std::span<const RayBlock> blocks, const VertexSource& source,
+                 PosedRayBlock* posed, Aabb* boxes);
+
+/// A model at one time, with one hierarchy in the world, whose leaves are numbers of blocks.
+struct PosedScene {
+  Vec3f center;    ///< of its bounds
+  float diagonal;  ///< theirs
+  KeyBox bounds;
+  std::span<const WideBvhNode> nodes;
+  const RayBlock* blocks;
+  const PosedRayBlock* posed;
+};
+QueryHit trace_posed(const PosedScene& scene, const QueryRay& ray, RayAim aim);
+
+/// What triangles without a structure bring `hit` to: every triangle is tested in double.
 void test_blocks(const WorldRay& ray, std::span<const TriangleBlock> blocks,
                  const VertexSource& vertices, RayHit& hit);
 
