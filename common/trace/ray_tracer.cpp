@@ -25,8 +25,8 @@ std::vector<Aabb> local_bounds(const ModelView& model) {
 }  // namespace
 
 struct RayTracer::Data {
-  explicit Data(const ModelView& m)
-      : model(m), poses(model), top(model), maps(model, local_bounds(model)) {
+  Data(const ModelView& m, std::size_t max_pose_bytes)
+      : model(m), poses(model, max_pose_bytes), top(model), maps(model, local_bounds(model)) {
     for (std::uint32_t s = 0; s < model.segment_count(); ++s) segments.emplace_back(model, s);
     for (const RaySegment& segment : segments)
       trees.insert(trees.end(), segment.trees().begin(), segment.trees().end());
@@ -34,7 +34,8 @@ struct RayTracer::Data {
     world_trees = std::make_unique<std::atomic<const WorldTree*>[]>(model.segment_count());
     for (const Aabb& box : model.key_boxes)
       key_boxes.push_back({{box.lo.x, box.lo.y, box.lo.z, 0}, {box.hi.x, box.hi.y, box.hi.z, 0}});
-    rays = {.center = model.bounds.center(),
+    rays = {.bounds = model.bounds,
+            .center = model.bounds.center(),
             .diagonal = diagonal(model.bounds),
             .clusters = model.cluster_count(),
             .top_nodes = top.nodes(),
@@ -102,7 +103,8 @@ struct RayTracer::Data {
   RayModel rays;
 };
 
-RayTracer::RayTracer(const ModelView& model) : data_(std::make_unique<Data>(model)) {}
+RayTracer::RayTracer(const ModelView& model, std::size_t max_pose_bytes)
+    : data_(std::make_unique<Data>(model, max_pose_bytes)) {}
 RayTracer::~RayTracer() = default;
 
 const ModelView& RayTracer::model() const { return data_->model; }
@@ -123,6 +125,17 @@ std::size_t RayTracer::bytes() const {
 
 QueryHit RayTracer::trace(const QueryRay& ray, const KeyInterval& time, RayAim aim) const {
   return trace_ray(data_->rays, ray, time, data_->segment_of(time), aim);
+}
+
+void RayTracer::trace(const QueryRay* rays, const KeyInterval* times, RayAim aim, QueryHit* hits,
+                      std::size_t count) const {
+  constexpr std::size_t kSome = 64;
+  std::uint32_t segments[kSome];
+  for (std::size_t first = 0; first < count; first += kSome) {
+    const std::size_t some = std::min(kSome, count - first);
+    for (std::size_t i = 0; i < some; ++i) segments[i] = data_->segment_of(times[first + i]);
+    trace_rays(data_->rays, rays + first, times + first, segments, aim, hits + first, some);
+  }
 }
 
 struct RayMoment::Posed {
@@ -159,8 +172,9 @@ QueryHit RayMoment::trace(const QueryRay& ray, RayAim aim) const {
 
 const RayMoment::Posed* RayMoment::make_posed() const {
   RayTracer::Data& data = *tracer_.data_;
-  const VertexSource source{data.poses.key(time_.key0), data.poses.key(time_.key1), time_.s};
+  const VertexSource source = data.poses.acquire(time_);
   PosedWorldTree tree(data.world_tree(data.segment_of(time_), source), source);
+  data.poses.release(time_);
   const std::size_t bytes = tree.bytes();
   const Posed* posed = new Posed{std::move(tree), bytes};
   data.moment_bytes += bytes;

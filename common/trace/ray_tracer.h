@@ -17,7 +17,9 @@ namespace mdk {
 class RayTracer {
  public:
   /// Cost: O(segments * T log T); runs in parallel.
-  explicit RayTracer(const ModelView& model);
+  /// `max_pose_bytes`: what decoded key poses may take; two of them are kept in any case.
+  explicit RayTracer(const ModelView& model,
+                     std::size_t max_pose_bytes = RayQueryOptions().max_pose_bytes);
   ~RayTracer();
   RayTracer(const RayTracer&) = delete;
   RayTracer& operator=(const RayTracer&) = delete;
@@ -30,6 +32,10 @@ class RayTracer {
   /// one. A ray that has no direction or is not finite hits nothing. Allocates nothing, once the
   /// keys it needs are there.
   QueryHit trace(const QueryRay& ray, const KeyInterval& time, RayAim aim) const;
+
+  /// The same for many rays, each at its own time: hits[i] is that of rays[i] at times[i].
+  void trace(const QueryRay* rays, const KeyInterval* times, RayAim aim, QueryHit* hits,
+             std::size_t count) const;
 
   /// What it holds now, moments included.
   std::size_t bytes() const;

@@ -4,10 +4,12 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <bit>
 #include <cmath>
 #include <numbers>
 #include <random>
+#include <thread>
 
 #include "common/base/isa.h"
 #include "common/base/parallel.h"
@@ -262,6 +264,44 @@ TEST(RayQuery, AMomentGivesBruteForcesHitsBeforeAndAfterItIsPosed) {
       reset_isa();
     }
   }
+}
+
+TEST(RayQuery, PosesStayWithinTheirLimitAndHitsAreTheSame) {
+  // Quantised, so that poses are decoded; room for three keys of many.
+  const DecomposeResult baked = test::bake_quantized(test::bending_tube(20, 16, 24));
+  const ModelView model = baked.model.view();
+  ASSERT_NE(model.poses.kind, PoseKind::kKeyPositions);
+  const std::size_t key_bytes = (model.vertex_count + 1) * sizeof(Vec3f);
+  const RayQuery all(ModelHandle::make(model)),
+      few(ModelHandle::make(model), RayQueryOptions{.max_pose_bytes = 3 * key_bytes});
+  const std::size_t all_before = all.bytes(), few_before = few.bytes();
+  RayMaker make(model, 31);
+  std::vector<QueryRay> rays;
+  std::vector<KeyInterval> times;
+  for (int i = 0; i < 3000; ++i) {
+    times.push_back(make.time());
+    rays.push_back(make.ray(times.back()));
+  }
+  std::vector<QueryHit> expected(rays.size()), hits(rays.size());
+  all.closest_hits(rays.data(), times.data(), expected.data(), rays.size());
+  for (const int threads : {1, 2}) {
+    const ThreadLimit limit(threads);
+    few.closest_hits(rays.data(), times.data(), hits.data(), rays.size());
+    for (std::size_t i = 0; i < rays.size(); ++i) EXPECT_TRUE(is_same(hits[i], expected[i])) << i;
+  }
+  // Threads that are not ours, more than there are places for.
+  std::vector<std::thread> others;
+  std::atomic<int> different = 0;
+  for (int t = 0; t < 6; ++t)
+    others.emplace_back([&, t] {
+      for (std::size_t i = static_cast<std::size_t>(t); i < rays.size(); i += 6)
+        different += is_same(few.closest_hit(rays[i], times[i]), expected[i]) ? 0 : 1;
+    });
+  for (std::thread& thread : others) thread.join();
+  EXPECT_EQ(different, 0);
+  EXPECT_EQ(all.bytes() - all_before, model.key_count() * key_bytes);
+  EXPECT_LE(few.bytes() - few_before,
+            std::max(3u, 2 * static_cast<unsigned>(thread_count())) * key_bytes);
 }
 
 TEST(RayQuery, RaysWithoutDirectionOrSenseHitNothing) {

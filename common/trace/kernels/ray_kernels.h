@@ -92,7 +92,8 @@ struct alignas(32) KeyBox {
 
 /// All that rays go through. F keys, K clusters, S segments, N nodes over clusters.
 struct RayModel {
-  Vec3f center;    ///< of the model's bounds
+  Aabb bounds;     ///< hold it at all times
+  Vec3f center;    ///< of the bounds
   float diagonal;  ///< theirs
   std::uint32_t clusters, top_nodes, top_roots;
   const KeyBox* key_boxes;           ///< F
@@ -109,6 +110,10 @@ struct RayModel {
 /// What the ray meets at a time, which lies in `segment`.
 QueryHit trace_ray(const RayModel& model, const QueryRay& ray, const KeyInterval& at,
                    std::uint32_t segment, RayAim aim);
+
+/// The same for many, each at a time of its own.
+void trace_rays(const RayModel& model, const QueryRay* rays, const KeyInterval* times,
+                const std::uint32_t* segments, RayAim aim, QueryHit* hits, std::size_t count);
 
 /// Where the vertices of a block are at one time.
 struct alignas(64) PosedRayBlock {

@@ -258,6 +258,9 @@ class RayAndBlocks {
   /// What boxes in the world must give way by, for the test's sake.
   float slack() const { return reach_ * (1.25f * 0x1p-19f); }
 
+  /// Too far away, or too large, for boxes in float.
+  bool is_vast() const { return !(reach_ < 0x1p59f); }
+
   /// Before the first test().
   void prepare() {
     std::size_t along = 0;
