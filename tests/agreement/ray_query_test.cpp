@@ -268,7 +268,10 @@ TEST(RayQuery, AMomentGivesBruteForcesHitsBeforeAndAfterItIsPosed) {
 
 TEST(RayQuery, PosesStayWithinTheirLimitAndHitsAreTheSame) {
   // Quantised, so that poses are decoded; room for three keys of many.
-  const DecomposeResult baked = test::bake_quantized(test::bending_tube(20, 16, 24));
+  DecomposeOptions options;
+  options.quantize = 1e-4;
+  SilentProgress silent;
+  const DecomposeResult baked = decompose(test::bending_tube(20, 16, 24), options, silent);
   const ModelView model = baked.model.view();
   ASSERT_NE(model.poses.kind, PoseKind::kKeyPositions);
   const std::size_t key_bytes = (model.vertex_count + 1) * sizeof(Vec3f);

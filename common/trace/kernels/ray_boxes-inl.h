@@ -102,8 +102,9 @@ class LaneRay {
 /// A ray on its way down one cluster's tree (walk-inl.h).
 class RayInTree {
  public:
-  HWY_INLINE RayInTree(const BoxRay& ray, RayAim aim, const RayHit& hit)
-      : ray_(Tag(), ray), aim_(aim), hit_(hit) {}
+  HWY_INLINE RayInTree(const BoxRay& ray, const WideBvhNode* nodes, const RayBlock* blocks,
+                       RayAim aim, const RayHit& hit)
+      : ray_(Tag(), ray), nodes_(nodes), blocks_(blocks), aim_(aim), hit_(hit) {}
 
   HWY_INLINE std::uint32_t enter(const WideBvhNode& node, float (&order)[kBvhWidth]) const {
     const Tag d;
@@ -116,12 +117,19 @@ class RayInTree {
                  << first;
     return entered & ((1u << node.count) - 1);
   }
+  HWY_INLINE void expect(WideBvhChild child) const {
+    const char* at = child.is_leaf() ? reinterpret_cast<const char*>(blocks_ + child.index())
+                                     : reinterpret_cast<const char*>(nodes_ + child.index());
+    for (int line = 0; line < 3; ++line) hwy::Prefetch(at + 64 * line);
+  }
   bool is_past(float order) const { return order > hit_.t; }
   bool finished() const { return aim_ == RayAim::kAny && hit_.triangle != kNoHit; }
 
  private:
   using Tag = hn::CappedTag<float, kBvhWidth>;
   LaneRay<Tag> ray_;
+  const WideBvhNode* nodes_;
+  const RayBlock* blocks_;
   RayAim aim_;
   const RayHit& hit_;
 };

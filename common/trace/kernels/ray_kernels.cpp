@@ -8,6 +8,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "common/trace/kernels/ray_kernels.cpp"
 #include <hwy/foreach_target.h>
+#include <hwy/cache_control.h>
 #include <hwy/highway.h>
 // after highway.h
 #include "common/trace/kernels/ray_boxes-inl.h"
@@ -143,7 +144,7 @@ class RayInModel {
                            (abs(mapped.origin) + size) * FourFloats::all(0x1p-19f),
                        std::min(0.0f, ray_.ray().t_min));
     if (HWY_UNLIKELY(mapped.is_extreme || ray_.is_vast())) local.enter_all();
-    RayInTree ray(local, ray_.aim(), ray_.hit());
+    RayInTree ray(local, tree.nodes.data(), tree.blocks, ray_.aim(), ray_.hit());
     walk_bvh(tree.nodes, ray, [&](std::uint32_t block) {
       test_leaf(ray_, tree.blocks + block, vertices_);
     });
@@ -273,7 +274,7 @@ QueryHit TracePosed(const PosedScene& scene, const QueryRay& ray, RayAim aim) {
   if (world.enters(lo, hi, hit.t)) {
     traced.prepare();
     const PosedVertices vertices(scene);
-    RayInTree in_tree(world, aim, hit);
+    RayInTree in_tree(world, scene.nodes.data(), scene.blocks, aim, hit);
     walk_bvh(scene.nodes, in_tree,
              [&](std::uint32_t block) { test_leaf(traced, scene.blocks + block, vertices); });
   }
