@@ -5,22 +5,19 @@
 #include <numeric>
 #include <span>
 #include <thread>
+#include <utility>
 
 #include "common/base/parallel.h"
 
 namespace mdk {
 
-KeyPoses::KeyPoses(const ModelView& model, std::size_t max_bytes) : model_(&model) {
+KeyPoses::KeyPoses(const ModelView& model, std::vector<std::uint32_t> order,
+                   std::size_t max_bytes)
+    : model_(&model), order_(std::move(order)) {
   const std::uint32_t keys = model.key_count();
-  const bool in_place = model.poses.kind == PoseKind::kKeyPositions;
-  const std::size_t key_bytes = (std::size_t{model.vertex_count} + 1) * sizeof(Vec3f);
-  const std::size_t most = max_bytes / key_bytes;
-  if (in_place || most >= keys) {
+  const std::size_t most = max_bytes / ((order_.size() + 1) * sizeof(Vec3f));
+  if (most >= keys) {
     kept_ = std::make_unique<Kept[]>(keys);
-    // Behind the last key there may be nothing to read.
-    if (in_place)
-      for (std::uint32_t key = 0; key + 1 < keys; ++key)
-        kept_[key].ready = model.poses.key_positions.data() + std::size_t{key} * model.vertex_count;
     return;
   }
   place_count_ = std::max(most, 2 * static_cast<std::size_t>(thread_count()));
@@ -32,13 +29,20 @@ KeyPoses::KeyPoses(const ModelView& model, std::size_t max_bytes) : model_(&mode
 
 void KeyPoses::make_room(std::vector<Vec3f>& positions) const {
   if (!positions.empty()) return;
-  positions.resize(std::size_t{model_->vertex_count} + 1);
+  positions.resize(order_.size() + 1);
   decoded_.fetch_add(positions.size() * sizeof(Vec3f), std::memory_order_relaxed);
 }
 
 void KeyPoses::decode_into(std::uint32_t key, std::vector<Vec3f>& positions) const {
-  decode_pose(*model_, key, {0, model_->vertex_count},
-              std::span(positions).first(model_->vertex_count));
+  const bool has_positions = model_->poses.kind == PoseKind::kKeyPositions;
+  std::vector<Vec3f> decoded(has_positions ? 0 : model_->vertex_count);
+  const Vec3f* all = decoded.data();
+  if (has_positions) {
+    all = model_->poses.key_positions.data() + std::size_t{key} * model_->vertex_count;
+  } else {
+    decode_pose(*model_, key, {0, model_->vertex_count}, decoded);
+  }
+  for (std::size_t i = 0; i < order_.size(); ++i) positions[i] = all[order_[i]];
 }
 
 const Vec3f* KeyPoses::decode(std::uint32_t key) const {

@@ -15,12 +15,13 @@
 namespace mdk {
 
 /// Safe to use from many threads at once; the model must outlive it. Memory: 12 bytes a vertex for
-/// each key that is held; where the model holds key positions, they are used in place, but for the
-/// last key. Where not all keys fit, each has a place while it is held; which one gives way is
+/// each key that is held. Vertices stand in an order of the caller's, so that those that are used
+/// together stand together. Where not all keys fit, each has a place while it is held; which one gives way is
 /// chosen by going round (clock).
 class KeyPoses {
  public:
-  KeyPoses(const ModelView& model, std::size_t max_bytes);
+  /// Vertex i of a pose is vertex order[i] of the model.
+  KeyPoses(const ModelView& model, std::vector<std::uint32_t> order, std::size_t max_bytes);
 
   /// Positions of all vertices at that time, until release(); behind the last one, 4 bytes may be
   /// read. Cost: O(1), but decoding where a key is not there. A thread may hold one time.
@@ -38,8 +39,10 @@ class KeyPoses {
   void release(const KeyInterval& at) const {
     if (places_ != nullptr) let_go_both(at);
   }
-  /// What is decoded now.
-  std::size_t bytes() const { return decoded_.load(std::memory_order_relaxed); }
+  /// What is decoded now, and the order.
+  std::size_t bytes() const {
+    return decoded_.load(std::memory_order_relaxed) + order_.size() * sizeof(std::uint32_t);
+  }
 
  private:
   /// Of a key that stays.
@@ -71,6 +74,7 @@ class KeyPoses {
   void let_go_both(const KeyInterval& at) const;
 
   const ModelView* model_;
+  std::vector<std::uint32_t> order_;
   mutable std::atomic<std::size_t> decoded_ = 0;
   std::unique_ptr<Kept[]> kept_;  ///< by key; none where keys come and go
 

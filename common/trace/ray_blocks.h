@@ -22,6 +22,14 @@ class RaySegment {
   std::span<const RayTree> trees() const { return trees_; }
   std::size_t bytes() const;
 
+  /// Calls visit(a block's vertex number, which may be changed) for all, block by block.
+  template <class Visit>
+  void for_each_vertex(const Visit& visit) {
+    for (std::vector<RayBlock>& blocks : blocks_)
+      for (RayBlock& block : blocks)
+        for (std::uint32_t& vertex : block.vertex) visit(vertex);
+  }
+
  private:
   std::vector<std::vector<WideBvhNode>> nodes_;  ///< by cluster
   std::vector<std::vector<RayBlock>> blocks_;    ///< by cluster

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "common/motion/model.h"
@@ -12,8 +13,10 @@ namespace mdk {
 /// Which triangles stand together, as they lie at one time.
 class WorldTree {
  public:
-  /// Runs in parallel. Cost: O(T log T).
-  WorldTree(const ModelView& model, const VertexSource& source);
+  /// Vertex v of the model stands at place_of_vertex[v] of the source. Runs in parallel. Cost: O(T
+  /// log T).
+  WorldTree(const ModelView& model, const std::vector<std::uint32_t>& place_of_vertex,
+            const VertexSource& source);
 
   const std::vector<WideBvhNode>& nodes() const { return nodes_; }
   const std::vector<RayBlock>& blocks() const { return blocks_; }
