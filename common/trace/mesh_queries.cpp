@@ -39,33 +39,58 @@ void for_each_triangle(const RayTree& tree, std::uint32_t leaf, Visit&& visit) {
 
 // --- all hits ---
 
-bool meets(const BoxRay& ray, const Aabb& box, float t_max) {
-  float near = ray.t_begin, far = t_max;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const bool rises = ray.inverse[k] >= 0;
-    const float first = ((rises ? box.lo[k] : box.hi[k]) -
-                         (rises ? ray.origin_for_low[k] : ray.origin_for_high[k])) *
-                        ray.inverse[k];
-    const float last = ((rises ? box.hi[k] : box.lo[k]) -
-                        (rises ? ray.origin_for_high[k] : ray.origin_for_low[k])) *
-                       ray.inverse[k];
-    near = std::max(near, first);
-    far = std::min(far, last);
+/// The ray in a cluster's basis. Boxes give way, on all sides, by what the triangle test's hits may
+/// be off from the ray and by the rounding of the boxes.
+class LocalRay {
+ public:
+  LocalRay(const WorldRay& ray, const Affine3d& local_from_world, const Aabb& bounds,
+           double world_slack)
+      : origin_(local_from_world.point(ray.origin)),
+        t_begin_(std::min(0.0, static_cast<double>(ray.t_min))) {
+    const Vec3d direction = local_from_world.vector(ray.direction);
+    const double longest =
+        std::max({std::abs(direction.x), std::abs(direction.y), std::abs(direction.z)});
+    // A component so small moves the ray by less than the slack on its way to anything.
+    const double shortest = std::max(longest * 0x1p-40, 1e-30);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double* row = local_from_world.m[k];
+      const double stretch = std::abs(row[0]) + std::abs(row[1]) + std::abs(row[2]);
+      const double size =
+          std::abs(origin_[k]) + std::max(std::abs(static_cast<double>(bounds.lo[k])),
+                                          std::abs(static_cast<double>(bounds.hi[k])));
+      slack_[k] = stretch * world_slack + size * kSlack;
+      const double d = direction[k];
+      inverse_[k] = 1 / (std::abs(d) < shortest ? std::copysign(shortest, d) : d);
+    }
   }
-  return near <= far;
-}
+
+  bool meets(const Aabb& box, double t_max) const {
+    double near = t_begin_, far = t_max;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double a = (static_cast<double>(box.lo[k]) - slack_[k] - origin_[k]) * inverse_[k];
+      const double b = (static_cast<double>(box.hi[k]) + slack_[k] - origin_[k]) * inverse_[k];
+      near = std::max(near, std::min(a, b));
+      far = std::min(far, std::max(a, b));
+    }
+    return near <= far;
+  }
+
+ private:
+  Vec3d origin_, slack_, inverse_;
+  double t_begin_;
+};
 
 /// One ray that collects hits.
 class AllHits {
  public:
-  AllHits(const ModelView& model, const VertexSource& vertices, const ScaledRay& ray,
+  AllHits(const ModelView& model, const HeldVertices& vertices, const ScaledRay& ray,
           std::vector<QueryHit>& hits)
       : model_(model), vertices_(vertices), ray_(ray), hits_(hits) {}
 
   void add_leaf(const RayTree& tree, std::uint32_t leaf) {
     batch_.count = 0;
     for_each_triangle(tree, leaf, [&](std::uint32_t t) {
-      batch_.push(t, model_.triangles[t]);
+      batch_.push(t, vertices_.placed(model_.triangles[t]));
       if (batch_.count == kBlockTriangles) flush();
     });
     flush();
@@ -75,14 +100,14 @@ class AllHits {
   RayHit test(TriangleBlock& block) const {
     block.pad();
     RayHit hit = ray_.nothing_yet();
-    test_blocks(ray_.ray, {&block, 1}, vertices_, hit);
+    test_blocks(ray_.ray, {&block, 1}, vertices_.source(), hit);
     return hit;
   }
   void flush() {
     if (batch_.count > 0 && test(batch_).triangle != kNoHit) {
       for (std::uint32_t i = 0; i < batch_.count; ++i) {
         TriangleBlock alone;
-        alone.push(batch_.triangle[i], model_.triangles[batch_.triangle[i]]);
+        alone.push(batch_.triangle[i], vertices_.placed(model_.triangles[batch_.triangle[i]]));
         const RayHit hit = test(alone);
         if (hit.triangle != kNoHit) hits_.push_back(ray_.in_callers_lengths(hit));
       }
@@ -91,7 +116,7 @@ class AllHits {
   }
 
   const ModelView& model_;
-  const VertexSource& vertices_;
+  const HeldVertices& vertices_;
   const ScaledRay& ray_;
   std::vector<QueryHit>& hits_;
   TriangleBlock batch_;
@@ -183,26 +208,26 @@ void find_all_hits(const RayTracer& tracer, const QueryRay& ray, const KeyInterv
   if (!scaled.usable) return;
   const RayModel& model = tracer.rays();
   const RayTree* trees = model.trees + std::size_t{tracer.segment_at(at)} * model.clusters;
-  const VertexSource vertices = tracer.vertices_at(at);
+  const HeldVertices vertices(tracer, at);
   AllHits all(tracer.model(), vertices, scaled, hits);
   const Vec3d& o = scaled.ray.origin;
   const Vec3d center = to_double(model.center);
   const double reach = std::abs(center.x - o.x) + std::abs(center.y - o.y) +
                        std::abs(center.z - o.z) + static_cast<double>(model.diagonal);
-  const float t_max = scaled.nothing_yet().t;
+  const double t_max = static_cast<double>(scaled.nothing_yet().t);
   std::vector<std::uint32_t> stack;
   for (std::uint32_t c = 0; c < model.clusters; ++c) {
     const RayTree& tree = trees[c];
     if (tree.nodes.empty()) continue;
-    const BoxRay local =
-        make_box_ray(scaled.ray, map_at(model, at, c), tree.bounds, reach * kSlack);
-    if (!meets(local, tree.bounds, t_max)) continue;
+    const Aabb bounds = tree.nodes[0].box();
+    const LocalRay local(scaled.ray, map_at(model, at, c), bounds, reach * kSlack);
+    if (!local.meets(bounds, t_max)) continue;
     stack.assign(1, 0);
     while (!stack.empty()) {
       const WideBvhNode& node = tree.nodes[stack.back()];
       stack.pop_back();
       for (std::uint32_t i = 0; i < node.count; ++i) {
-        if (!meets(local, node.box(i), t_max)) continue;
+        if (!local.meets(node.box(i), t_max)) continue;
         if (node.child[i].is_leaf()) {
           all.add_leaf(tree, node.child[i].index());
         } else {
@@ -249,7 +274,7 @@ QueryHit find_closest_point(const RayTracer& tracer, const Vec3f& point, float r
   const RayModel& model = tracer.rays();
   const ModelView& mesh = tracer.model();
   const RayTree* trees = model.trees + std::size_t{tracer.segment_at(at)} * model.clusters;
-  const VertexSource vertices = tracer.vertices_at(at);
+  const HeldVertices vertices(tracer, at);
   const Vec3d p = to_double(point);
 
   QueryHit best;
@@ -276,7 +301,7 @@ QueryHit find_closest_point(const RayTracer& tracer, const Vec3f& point, float r
     if (next.bound > static_cast<double>(best.t)) break;
     const RayTree& tree = trees[next.cluster];
     if (!locals[next.cluster].known)
-      locals[next.cluster] = make_local_point(model, p, at, next.cluster, tree.bounds);
+      locals[next.cluster] = make_local_point(model, p, at, next.cluster, tree.nodes[0].box());
     if (!next.child.is_leaf()) {
       const WideBvhNode& node = tree.nodes[next.child.index()];
       for (std::uint32_t i = 0; i < node.count; ++i)

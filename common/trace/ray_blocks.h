@@ -22,11 +22,25 @@ class RaySegment {
   std::span<const RayTree> trees() const { return trees_; }
   std::size_t bytes() const;
 
+  /// Calls visit(a block's vertex number, which may be changed) for all, block by block.
+  template <class Visit>
+  void for_each_vertex(const Visit& visit) {
+    for (std::vector<RayBlock>& blocks : blocks_)
+      for (RayBlock& block : blocks)
+        for (std::uint32_t& vertex : block.vertex) visit(vertex);
+  }
+
  private:
   std::vector<std::vector<WideBvhNode>> nodes_;  ///< by cluster
   std::vector<std::vector<RayBlock>> blocks_;    ///< by cluster
   std::vector<RayTree> trees_;
 };
+
+/// The nodes of a tree over triangles, which count from `first`, with links to the first blocks of
+/// leaves, which are appended to `blocks`.
+std::vector<WideBvhNode> take_nodes(WideBvh tree, std::uint32_t first,
+                                    std::span<const Triangle> triangles,
+                                    std::vector<RayBlock>& blocks);
 
 /// Appends a leaf's triangles to `blocks`: as few blocks as hold them in order, each of at most
 /// kBlockVertices vertices.

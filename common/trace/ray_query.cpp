@@ -22,7 +22,8 @@ constexpr std::size_t kRaysPerChunk = 64;
 }  // namespace
 
 struct RayQuery::State {
-  explicit State(const Model& m) : handle(m), tracer(ModelHandle::view(handle)) {}
+  State(const Model& m, const RayQueryOptions& options)
+      : handle(m), tracer(ModelHandle::view(handle), options.max_pose_bytes) {}
 
   /// Throws Error (kUsage) for a time that the model does not have.
   void require_time(const KeyInterval& at) const {
@@ -41,8 +42,11 @@ struct RayQuery::State {
 };
 
 struct QueryMoment::Data {
+  Data(std::shared_ptr<const void> state, const RayTracer& tracer, const KeyInterval& time)
+      : query(std::move(state)), moment(tracer, time) {}
+
   std::shared_ptr<const void> query;  ///< the state that it is of
-  KeyInterval at;
+  RayMoment moment;
 };
 QueryMoment::QueryMoment(std::shared_ptr<const Data> data) : data_(std::move(data)) {}
 
@@ -56,7 +60,8 @@ void require_own(const State& state, const Moment& moment) {
 
 }  // namespace
 
-RayQuery::RayQuery(const Model& model) : state_(std::make_shared<const State>(model)) {}
+RayQuery::RayQuery(const Model& model, const RayQueryOptions& options)
+    : state_(std::make_shared<const State>(model, options)) {}
 
 QueryHit RayQuery::closest_hit(const QueryRay& ray, const KeyInterval& time) const {
   return state_->trace(ray, time, RayAim::kClosest);
@@ -66,29 +71,33 @@ bool RayQuery::any_hit(const QueryRay& ray, const KeyInterval& time) const {
 }
 QueryHit RayQuery::closest_hit(const QueryRay& ray, const QueryMoment& moment) const {
   require_own(*state_, *moment.data_);
-  return state_->tracer.trace(ray, moment.data_->at, RayAim::kClosest);
+  return moment.data_->moment.trace(ray, RayAim::kClosest);
 }
 bool RayQuery::any_hit(const QueryRay& ray, const QueryMoment& moment) const {
   require_own(*state_, *moment.data_);
-  return state_->tracer.trace(ray, moment.data_->at, RayAim::kAny).is_hit();
+  return moment.data_->moment.trace(ray, RayAim::kAny).is_hit();
 }
 
 QueryMoment RayQuery::prepare(const KeyInterval& time) const {
   state_->require_time(time);
-  return QueryMoment(std::make_shared<const QueryMoment::Data>(QueryMoment::Data{state_, time}));
+  return QueryMoment(std::make_shared<const QueryMoment::Data>(state_, state_->tracer, time));
 }
 
 void RayQuery::closest_hits(const QueryRay* rays, const KeyInterval* times, QueryHit* hits,
                             std::size_t count) const {
   parallel_chunks(count, kRaysPerChunk, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) hits[i] = closest_hit(rays[i], times[i]);
+    for (std::size_t i = begin; i < end; ++i) state_->require_time(times[i]);
+    state_->tracer.trace(rays + begin, times + begin, RayAim::kClosest, hits + begin, end - begin);
   });
 }
 
 void RayQuery::any_hits(const QueryRay* rays, const KeyInterval* times, std::uint8_t* hits,
                         std::size_t count) const {
   parallel_chunks(count, kRaysPerChunk, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) hits[i] = any_hit(rays[i], times[i]);
+    for (std::size_t i = begin; i < end; ++i) state_->require_time(times[i]);
+    QueryHit some[kRaysPerChunk];
+    state_->tracer.trace(rays + begin, times + begin, RayAim::kAny, some, end - begin);
+    for (std::size_t i = begin; i < end; ++i) hits[i] = some[i - begin].is_hit() ? 1 : 0;
   });
 }
 

@@ -49,7 +49,7 @@ const Surfaces::Around& Surfaces::around() const {
 }
 
 // As pictures are shaded: weighted by area, since a cross product is twice its triangle's.
-Vec3f Surfaces::vertex_normal(std::uint32_t vertex, const VertexSource& vertices) const {
+Vec3f Surfaces::vertex_normal(std::uint32_t vertex, const HeldVertices& vertices) const {
   const Around& lists = around();
   Vec3f sum;
   for (std::uint32_t i = lists.first[vertex]; i < lists.first[vertex + 1]; ++i) {
@@ -60,10 +60,24 @@ Vec3f Surfaces::vertex_normal(std::uint32_t vertex, const VertexSource& vertices
   return normalized(sum, Vec3f{});
 }
 
+void Surfaces::set_geometry(const Triangle& triangle, const double (&weight)[3],
+                            const KeyInterval& time, bool is_smooth, Surface& surface) const {
+  const HeldVertices vertices(tracer_, time);
+  Vec3d corner[3];
+  for (int k = 0; k < 3; ++k) corner[k] = to_double(vertices.position(triangle.v[k]));
+  surface.position = to_float(mix(corner, weight));
+  surface.normal =
+      to_float(normalized(cross(corner[1] - corner[0], corner[2] - corner[0]), Vec3d{}));
+  surface.smooth_normal = surface.normal;
+  if (!is_smooth) return;
+  Vec3d normal[3];
+  for (int k = 0; k < 3; ++k) normal[k] = to_double(vertex_normal(triangle.v[k], vertices));
+  surface.smooth_normal = to_float(normalized(mix(normal, weight), to_double(surface.normal)));
+}
+
 Surface Surfaces::at(const QueryHit& hit, const KeyInterval& time, SurfaceParts parts) const {
   const ModelView& model = tracer_.model();
   const Triangle& triangle = model.triangles[hit.triangle];
-  const VertexSource vertices = tracer_.vertices_at(time);
   const double b1 = static_cast<double>(hit.bary1), b2 = static_cast<double>(hit.bary2);
   const double weight[3] = {1 - b1 - b2, b1, b2};
 
@@ -71,25 +85,16 @@ Surface Surfaces::at(const QueryHit& hit, const KeyInterval& time, SurfaceParts 
   surface.source_triangle = model.source_triangles[hit.triangle];
   surface.material = model.appearance.triangle_materials[hit.triangle];
   const Material& material = model.appearance.materials[surface.material];
-
-  Vec3d corner[3];
-  for (int k = 0; k < 3; ++k) corner[k] = to_double(vertices.position(triangle.v[k]));
-  surface.position = to_float(mix(corner, weight));
-  surface.normal =
-      to_float(normalized(cross(corner[1] - corner[0], corner[2] - corner[0]), Vec3d{}));
-  surface.smooth_normal = surface.normal;
-  if (has(parts, SurfaceParts::kSmoothNormal) && (material.flags & kMaterialFlatShaded) == 0) {
-    Vec3d normal[3];
-    for (int k = 0; k < 3; ++k) normal[k] = to_double(vertex_normal(triangle.v[k], vertices));
-    surface.smooth_normal = to_float(normalized(mix(normal, weight), to_double(surface.normal)));
-  }
+  set_geometry(
+      triangle, weight, time,
+      has(parts, SurfaceParts::kSmoothNormal) && (material.flags & kMaterialFlatShaded) == 0,
+      surface);
   if (has(parts, SurfaceParts::kVelocity)) {
     const Motion motion = motion_at(model, time);
     if (motion.seconds > 0) {
-      const VertexSource ends = tracer_.vertices_at({motion.key0, motion.key1, 0});
-      Vec3d moved[3];
-      for (int k = 0; k < 3; ++k)
-        moved[k] = to_double(ends.to[triangle.v[k]]) - to_double(ends.from[triangle.v[k]]);
+      const HeldVertices ends(tracer_, {motion.key0, motion.key1, 0});
+      const Vec3d moved[3] = {ends.moved(triangle.v[0]), ends.moved(triangle.v[1]),
+                              ends.moved(triangle.v[2])};
       surface.velocity = to_float(mix(moved, weight) * (1 / motion.seconds));
     }
   }

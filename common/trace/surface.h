@@ -25,7 +25,9 @@ class Surfaces {
     std::vector<std::uint32_t> first, triangles;
   };
   const Around& around() const;
-  Vec3f vertex_normal(std::uint32_t vertex, const VertexSource& vertices) const;
+  Vec3f vertex_normal(std::uint32_t vertex, const HeldVertices& vertices) const;
+  void set_geometry(const Triangle& triangle, const double (&weight)[3], const KeyInterval& time,
+                    bool is_smooth, Surface& surface) const;
 
   const RayTracer& tracer_;
   mutable std::once_flag once_;

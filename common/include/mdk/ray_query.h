@@ -75,6 +75,13 @@ class QueryMoment {
   std::shared_ptr<const Data> data_;
 };
 
+struct RayQueryOptions {
+  /// What decoded key poses may take, in bytes: past it, those that were not used for a while are
+  /// decoded again when a ray asks for them. Two poses for every thread that traces are kept in any
+  /// case. Rays in the order of their times are then the quickest.
+  std::size_t max_pose_bytes = std::size_t{256} << 20;
+};
+
 /// Copies are cheap and count as one query. All members but the constructor may be called from many
 /// threads at once. Times are of Model::locate_time() or at_key(); one that the model does not have
 /// throws Error (kUsage).
@@ -82,8 +89,8 @@ class RayQuery {
  public:
   /// Builds one hierarchy per cluster and segment, and keeps the model. Cost: O(segments * T log
   /// T). Runs in parallel. Key poses that are not stored as positions are decoded when a ray first
-  /// asks for them, and kept: 12 bytes a vertex for every such key.
-  explicit RayQuery(const Model& model);
+  /// asks for them, and kept: 12 bytes a vertex for every such key, within `options`.
+  explicit RayQuery(const Model& model, const RayQueryOptions& options = {});
 
   // No moves: a query is never empty.
   RayQuery(const RayQuery&) = default;
@@ -91,13 +98,14 @@ class RayQuery {
 
   /// The closest hit at the ray's own time, ties to the lower triangle: brute force's over the same
   /// triangle test, bit for bit, on every machine. No ray slips between triangles that share an
-  /// edge. Cost: O(clusters) on top of the walk.
+  /// edge. Allocates nothing, but for decoded poses.
   QueryHit closest_hit(const QueryRay& ray, const KeyInterval& time) const;
 
   /// Whether the ray hits anything at its own time.
   bool any_hit(const QueryRay& ray, const KeyInterval& time) const;
 
-  /// For many rays at one time: what they share, computed once. O(clusters).
+  /// For many rays at one time. Costs nothing yet: once enough rays were traced for it to pay, the
+  /// model is posed and one hierarchy over it refitted, O(T), kept as long as the moment.
   QueryMoment prepare(const KeyInterval& time) const;
   /// Throws Error (kUsage) for a moment of another query.
   QueryHit closest_hit(const QueryRay& ray, const QueryMoment& moment) const;

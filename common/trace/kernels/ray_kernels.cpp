@@ -1,34 +1,18 @@
-// The triangle test of single rays, in double. With corners a, b, c seen from the ray's origin, the
-// weight of c at the direction d is ((b - a) x (b + a)) . d, exactly negated when a and b change
-// places: two triangles that share an edge agree on which side the ray passes.
-//
-//     hit where the three weights have one sign, each give or take its rounding: also a ray that
-//     passes a vertex exactly, where all signs are rounding, hits one of the triangles around it
-//     p = (w_a a + w_b b + w_c c) / (w_a + w_b + w_c)      weights of the wrong sign count as 0, so
-//                                                          p is on the triangle in any case
-//     t = p.d / d.d                                        and p must lie close to the ray
-//
-// The last clause does nothing for triangles of sane shape. For slivers, whose weights are all
-// rounding, it keeps hits where any box around the triangle shows them.
-//
-// In float, triangles are rejected before that. With the ray along an axis of the image (x, y), the
-// origin at (0, 0), an edge's weight is a_x b_y - a_y b_x. Let g be no less than the distance of any
-// point of the model from the origin, m the largest |x|, |y| of the corners. A hit has a point of the
-// triangle within 2^-20 g of the ray, so within sqrt(2) 2^-20 g of (0, 0) along x and along y, which
-// moves a weight by 1.42 * 2^-18 g m; rounding the corners to 6 * 2^-24 g moves it by 1.5 * 2^-20 g m,
-// and the products round by 2^-21 g m: in all less than R m + R^2, R = 1.25 * 2^-17 g. So there is no
-// hit where one weight is past R m + R^2 and another below its negative; nor where all corners lie
-// beyond the hit so far, or before t_min, by more than R.
+// How a single ray goes through a model at a time of its own, or through one that was posed.
 #include "common/trace/kernels/ray_kernels.h"
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "common/trace/kernels/ray_kernels.cpp"
 #include <hwy/foreach_target.h>
+#include <hwy/cache_control.h>
 #include <hwy/highway.h>
 // after highway.h
+#include "common/trace/kernels/ray_boxes-inl.h"
+#include "common/trace/kernels/ray_test-inl.h"
 #include "common/trace/kernels/walk-inl.h"
 #include "common/trace/query_keys.h"
 
@@ -37,312 +21,78 @@ namespace mdk {
 namespace HWY_NAMESPACE {
 namespace rays {
 
-using DoubleTag = hn::CappedTag<double, kBvhWidth>;
-using DoubleVec = hn::Vec<DoubleTag>;
-using DoublePoints = Points<DoubleTag>;
-
-// --- the test in double ---
-
-struct Weight {
-  DoubleVec value;
-  DoubleVec error;  ///< no less than what rounding may have done to the value
-};
-
-/// ((b - a) x (b + a)) . d; `rounding` is kRounding times the largest component of d.
-HWY_INLINE Weight edge_weight(const DoublePoints& a, const DoublePoints& b, const DoublePoints& d,
-                              DoubleVec rounding) {
-  const DoublePoints u = b - a, v = b + a;
-  return {dot(cross(u, v), d), hn::Mul(hn::Mul(sum_of_sizes(u), sum_of_sizes(v)), rounding)};
+HWY_INLINE FourFloats four_of(const Vec3f& v) {
+  const float f[4] = {v.x, v.y, v.z, 0};
+  return FourFloats::load(f);
 }
 
-/// About twenty roundings of 2^-53 each, relative to the sizes of all factors.
-constexpr double kRounding = 0x1p-48;
-
-/// One ray against triangles.
-class RayTester {
- public:
-  RayTester(const WorldRay& ray, RayHit& hit)
-      : ray_(ray),
-        hit_(hit),
-        direction_square_(dot(ray.direction, ray.direction)),
-        rounding_(kRounding * std::max({std::abs(ray.direction.x), std::abs(ray.direction.y),
-                                        std::abs(ray.direction.z)})) {}
-
-  /// `count` triangles, not more than a vector holds; corner k of triangle i is vertex corner[k][i].
-  /// Places up to the lanes of a vector must be vertices, too.
-  void test(const std::uint32_t* const (&corner)[3], const std::uint32_t* triangle,
-            std::size_t count, const VertexSource& vertices) {
-    const auto points = [&](const std::uint32_t* index) {
-      const DoubleTag d;
-      alignas(64) double x[kBvhWidth], y[kBvhWidth], z[kBvhWidth];
-      for (std::size_t i = 0; i < hn::Lanes(d); ++i) {
-        const Vec3d v = to_double(vertices.position(index[i])) - ray_.origin;
-        x[i] = v.x;
-        y[i] = v.y;
-        z[i] = v.z;
-      }
-      return DoublePoints{hn::Load(d, x), hn::Load(d, y), hn::Load(d, z)};
-    };
-    test_lanes(points(corner[0]), points(corner[1]), points(corner[2]), triangle, count);
-  }
-
- private:
-  HWY_INLINE void test_lanes(const DoublePoints& a, const DoublePoints& b, const DoublePoints& c,
-                             const std::uint32_t* triangles, std::size_t count) {
-    const DoubleTag d;
-    const DoublePoints direction = broadcast(d, ray_.direction);
-    const auto rounding = hn::Set(d, rounding_);
-    const Weight wa = edge_weight(b, c, direction, rounding),
-                 wb = edge_weight(c, a, direction, rounding),
-                 wc = edge_weight(a, b, direction, rounding);
-    const auto zero = hn::Zero(d);
-    const auto side = hn::CopySign(hn::Set(d, 1.0), hn::Add(hn::Add(wa.value, wb.value), wc.value));
-    const auto is_inner = [&](const Weight& w) {
-      return hn::Ge(hn::Mul(w.value, side), hn::Neg(w.error));
-    };
-    const auto inside = hn::And(hn::And(is_inner(wa), is_inner(wb)), is_inner(wc));
-    if (hn::AllFalse(d, inside)) return;
-
-    const auto share_of = [&](const Weight& w) { return hn::Max(hn::Mul(w.value, side), zero); };
-    const auto sa = share_of(wa), sb = share_of(wb), sc = share_of(wc);
-    const auto total = hn::Add(hn::Add(sa, sb), sc);
-    const auto share = hn::Div(hn::Set(d, 1.0), total);
-    const DoublePoints p = scaled(scaled(a, sa) + scaled(b, sb) + scaled(c, sc), share);
-    const auto t = hn::Div(dot(p, direction), hn::Set(d, direction_square_));
-    const DoublePoints off = p - scaled(direction, t);
-    const auto close = hn::Le(dot(off, off), hn::Mul(dot(p, p), hn::Set(d, 0x1p-40)));
-    // Written so that a corner that is not a number fails it.
-    const auto hit = hn::And(inside, hn::And(close, hn::Gt(total, zero)));
-    std::uint32_t lanes = mask_bits(d, hit) & ((1u << count) - 1);
-    if (lanes == 0) return;
-
-    alignas(64) double depth[kBvhWidth], bary1[kBvhWidth], bary2[kBvhWidth];
-    hn::Store(t, d, depth);
-    hn::Store(hn::Mul(sb, share), d, bary1);
-    hn::Store(hn::Mul(sc, share), d, bary2);
-    for (; lanes != 0; lanes &= lanes - 1) {
-      const auto i = static_cast<std::size_t>(__builtin_ctz(lanes));
-      const auto at = static_cast<float>(depth[i]);
-      const std::uint32_t triangle = triangles[i];
-      const bool is_closer = at < hit_.t || (at == hit_.t && triangle < hit_.triangle);
-      if (!(at > ray_.t_min) || !is_closer) continue;
-      hit_ = {at, triangle, static_cast<float>(bary1[i]), static_cast<float>(bary2[i])};
-    }
-  }
-
-  const WorldRay& ray_;
-  RayHit& hit_;
-  double direction_square_, rounding_;
-};
-
-// --- boxes ---
-
-/// A ray against boxes of one basis, as make_box_ray() has it, its numbers in every lane: per axis
-/// the plane that it meets first, and last.
-template <class D>
-class LaneRay {
- public:
-  HWY_INLINE LaneRay(D d, const BoxRay& ray) : t_begin_(hn::Set(d, ray.t_begin)) {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const bool rises = ray.inverse[axis] >= 0;
-      near_row_[axis] = static_cast<std::uint32_t>(2 * axis + (rises ? 0 : 1));
-      near_[axis] = hn::Set(d, rises ? ray.origin_for_low[axis] : ray.origin_for_high[axis]);
-      far_[axis] = hn::Set(d, rises ? ray.origin_for_high[axis] : ray.origin_for_low[axis]);
-      inverse_[axis] = hn::Set(d, ray.inverse[axis]);
-    }
-  }
-
-  /// Bits of the boxes entered before t_max; where, into `order`. row(i) is a vector of planes.
-  template <class Row>
-  HWY_INLINE std::uint32_t enter(D d, float t_max, float* order, const Row& row) const {
-    auto near = t_begin_, far = hn::Set(d, t_max);
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      near = hn::Max(near, hn::Mul(hn::Sub(row(near_row_[axis]), near_[axis]), inverse_[axis]));
-      far = hn::Min(far,
-                    hn::Mul(hn::Sub(row(near_row_[axis] ^ 1u), far_[axis]), inverse_[axis]));
-    }
-    hn::Store(near, d, order);
-    return mask_bits(d, hn::Le(near, far));
-  }
-
- private:
-  hn::Vec<D> near_[3], far_[3], inverse_[3], t_begin_;
-  std::uint32_t near_row_[3];
-};
-
-/// A ray on its way down one cluster's tree (walk-inl.h).
-class RayInTree {
- public:
-  HWY_INLINE RayInTree(const BoxRay& ray, RayAim aim, const RayHit& hit)
-      : ray_(Tag(), ray), aim_(aim), hit_(hit) {}
-
-  HWY_INLINE std::uint32_t enter(const WideBvhNode& node, float (&order)[kBvhWidth]) const {
-    const Tag d;
-    std::uint32_t entered = 0;
-    for (std::size_t first = 0; first < kBvhWidth; first += hn::Lanes(d))
-      entered |= ray_.enter(d, hit_.t, order + first,
-                            [&](std::uint32_t row) {
-                              return hn::Load(d, node.bounds[row] + first);
-                            })
-                 << first;
-    return entered & ((1u << node.count) - 1);
-  }
-  bool is_past(float order) const { return order > hit_.t; }
-  bool finished() const { return aim_ == RayAim::kAny && hit_.triangle != kNoHit; }
-
- private:
-  using Tag = hn::CappedTag<float, kBvhWidth>;
-  LaneRay<Tag> ray_;
-  RayAim aim_;
-  const RayHit& hit_;
-};
-
-// --- blocks ---
-
-/// Sixteen numbers, of which lanes pick some.
-class Sixteen {
- public:
-  static constexpr std::size_t kParts = 16 / hn::MaxLanes(FloatTag());
-
-  HWY_INLINE void set(std::size_t part, FloatVec values) {
-    if constexpr (kParts <= 2) {
-      part_[part] = values;
-    } else {
-      hn::Store(values, FloatTag(), stored_ + part * hn::Lanes(FloatTag()));
-    }
-  }
-  using Indices = hn::Vec<hn::RebindToSigned<FloatTag>>;
-  HWY_INLINE FloatVec pick(Indices index) const {
-    const FloatTag d;
-    const hn::RebindToSigned<FloatTag> di;
-    if constexpr (kParts == 1) {
-      return hn::TableLookupLanes(part_[0], hn::IndicesFromVec(d, index));
-    } else if constexpr (kParts == 2) {
-      const auto seven = hn::Set(di, 7);
-      const auto place = hn::IndicesFromVec(d, hn::And(index, seven));
-      return hn::IfThenElse(hn::RebindMask(d, hn::Gt(index, seven)),
-                            hn::TableLookupLanes(part_[1], place),
-                            hn::TableLookupLanes(part_[0], place));
-    } else {
-      return hn::GatherIndex(d, stored_, index);
-    }
-  }
-
- private:
-  FloatVec part_[kParts <= 2 ? kParts : 1];  // in use where a vector can look them up
-  alignas(64) float stored_[kParts <= 2 ? 1 : 16];
-};
-
-#if HWY_TARGET != HWY_SCALAR
-/// Four vertices at the source's time; a lane more than a vertex has is read.
-HWY_INLINE Points<hn::FixedTag<float, 4>> pose_four(const std::uint32_t* vertex,
-                                                    const VertexSource& source) {
-  const hn::FixedTag<float, 4> d;
-  const auto s = hn::Set(d, source.s);
-  hn::Vec<hn::FixedTag<float, 4>> row[4];
-  for (std::size_t i = 0; i < 4; ++i) {
-    const auto from = hn::LoadU(d, &source.from[vertex[i]].x);
-    const auto to = hn::LoadU(d, &source.to[vertex[i]].x);
-    row[i] = hn::Add(from, hn::Mul(hn::Sub(to, from), s));
-  }
-  const auto xy02 = hn::InterleaveLower(d, row[0], row[2]),
-             xy13 = hn::InterleaveLower(d, row[1], row[3]),
-             z02 = hn::InterleaveUpper(d, row[0], row[2]),
-             z13 = hn::InterleaveUpper(d, row[1], row[3]);
-  return {hn::InterleaveLower(d, xy02, xy13), hn::InterleaveUpper(d, xy02, xy13),
-          hn::InterleaveLower(d, z02, z13)};
+/// All blocks of a leaf.
+template <class Vertices>
+HWY_INLINE void test_leaf(RayAndBlocks& ray, const RayBlock* block, const Vertices& vertices) {
+  ray.test(*block, vertices);
+  while (block->has_next) ray.test(*++block, vertices);
 }
-#endif
 
-/// As many vertices as a vector holds.
-template <class D>
-HWY_INLINE Points<D> pose(D d, const std::uint32_t* vertex, const VertexSource& source) {
-#if HWY_TARGET == HWY_SCALAR
-  const Vec3f p = source.position(vertex[0]);
-  return {hn::Set(d, p.x), hn::Set(d, p.y), hn::Set(d, p.z)};
-#else
-  if constexpr (hn::MaxLanes(d) == 4) {
-    return pose_four(vertex, source);
-  } else {
-    const hn::Half<D> half;
-    const auto low = pose(half, vertex, source),
-               high = pose(half, vertex + hn::Lanes(half), source);
-    return {hn::Combine(d, high.x, low.x), hn::Combine(d, high.y, low.y),
-            hn::Combine(d, high.z, low.z)};
+/// Vertices between two keys, which are decoded when the first block asks for one, and held until
+/// the ray is done.
+class KeyVertices {
+ public:
+  KeyVertices(const KeyPoses& poses, const KeyInterval& at) : poses_(poses), at_(at) {}
+  ~KeyVertices() {
+    if (source_.from != nullptr) poses_.release(at_);
   }
-#endif
-}
+  KeyVertices(const KeyVertices&) = delete;
+  KeyVertices& operator=(const KeyVertices&) = delete;
+
+  template <class D>
+  HWY_INLINE Points<D> points(D d, const RayBlock& block, std::size_t first) const {
+    if (HWY_UNLIKELY(source_.from == nullptr)) source_ = poses_.acquire(at_);
+    return pose(d, block.vertex + first, source_);
+  }
+  HWY_INLINE Vec3f position(const RayBlock& block, std::size_t place) const {
+    return source_.position(block.vertex[place]);
+  }
+
+ private:
+  const KeyPoses& poses_;
+  const KeyInterval& at_;
+  mutable VertexSource source_{nullptr, nullptr, 0};
+};
 
 /// One ray on its way through a model.
 class RayInModel {
  public:
-  RayInModel(const RayModel& model, const WorldRay& ray, const KeyInterval& at, RayAim aim,
+  RayInModel(const RayModel& model, const ScaledRay& ray, const KeyInterval& at, RayAim aim,
              RayHit& hit)
-      : model_(model), ray_(ray), at_(at), aim_(aim), hit_(hit), tester_(ray, hit) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      origin_[k] = static_cast<float>(ray.origin[k]);
-      direction_[k] = static_cast<float>(ray.direction[k]);
-    }
-    reach_ = std::abs(model.center.x - origin_[0]) + std::abs(model.center.y - origin_[1]) +
-             std::abs(model.center.z - origin_[2]) + model.diagonal;
-    slack_ = reach_ * (1.25f * 0x1p-19f);
-  }
+      : model_(model),
+        at_(at),
+        ray_(ray, model.center, model.diagonal, aim, hit),
+        vertices_(*model.poses, at) {}
 
   void trace(std::uint32_t segment) {
     trees_ = model_.trees + std::size_t{segment} * model_.clusters;
-    if (!enter_model()) return;
-    set_filter();
-    walk_top();
+    const FourFloats s = FourFloats::all(at_.s);
+    const KeyBox &from = model_.key_boxes[at_.key0], &to = model_.key_boxes[at_.key1];
+    const auto side = [&](const float (&a)[4], const float (&b)[4]) {
+      return FourFloats::load(a) + (FourFloats::load(b) - FourFloats::load(a)) * s;
+    };
+    const FourFloats lo = side(from.lo, to.lo), hi = side(from.hi, to.hi);
+    // No box of this time reaches farther.
+    const FourFloats size = abs(ray_.origin()) + max(abs(lo), abs(hi));
+    BoxRay world(ray_.origin(), ray_.direction(),
+                 FourFloats::all(ray_.slack()) + size * FourFloats::all(0x1p-19f),
+                 std::min(0.0f, ray_.ray().t_min));
+    if (HWY_UNLIKELY(ray_.is_vast())) world.enter_all();
+    if (!world.enters(lo, hi, ray_.hit().t)) return;
+    ray_.prepare();
+    walk_top(world);
   }
 
  private:
-  bool finished() const { return aim_ == RayAim::kAny && hit_.triangle != kNoHit; }
-
-  /// Prepares the ray for the world's boxes; whether it enters the model's at its time.
-  bool enter_model() {
-    const Aabb &from = model_.key_boxes[at_.key0], &to = model_.key_boxes[at_.key1];
-    float near = std::min(0.0f, ray_.t_min), far = hit_.t;
-    world_.t_begin = near;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const float d = direction_[k];
-      const float inverse = 1 / (std::abs(d) < kShortest ? std::copysign(kShortest, d) : d);
-      const float lo = from.lo[k] + (to.lo[k] - from.lo[k]) * at_.s;
-      const float hi = from.hi[k] + (to.hi[k] - from.hi[k]) * at_.s;
-      // No box of this time reaches farther.
-      const float size = std::abs(origin_[k]) + std::max(std::abs(lo), std::abs(hi));
-      const float slack = slack_ + size * 0x1p-19f;
-      world_.inverse[k] = inverse;
-      world_.origin_for_low[k] = origin_[k] + slack;
-      world_.origin_for_high[k] = origin_[k] - slack;
-      const float a = (lo - world_.origin_for_low[k]) * inverse,
-                  b = (hi - world_.origin_for_high[k]) * inverse;
-      near = std::max(near, std::min(a, b));
-      far = std::min(far, std::max(a, b));
-    }
-    return near <= far;
-  }
-
-  void set_filter() {
-    std::size_t along = 0;
-    for (std::size_t k = 1; k < 3; ++k)
-      if (std::abs(direction_[k]) > std::abs(direction_[along])) along = k;
-    const std::size_t x = (along + 1) % 3, y = (along + 2) % 3;
-    const float inverse = 1 / direction_[along];
-    for (auto& row : image_) row[0] = row[1] = row[2] = 0;
-    image_[0][x] = 1;
-    image_[0][along] = -direction_[x] * inverse;
-    image_[1][y] = 1;
-    image_[1][along] = -direction_[y] * inverse;
-    image_[2][along] = inverse;
-    // Out of this range, products in float might be lost: nothing is rejected then.
-    tolerance_ = reach_ > 0x1p-40f && reach_ < 0x1p60f ? reach_ * (1.25f * 0x1p-17f)
-                                                       : std::numeric_limits<float>::infinity();
-  }
-
-  void walk_top() {
+  void walk_top(const BoxRay& world) {
     using Tag = hn::CappedTag<float, kTopWidth>;
     const Tag d;
-    const LaneRay<Tag> ray(d, world_);
+    const LaneRay<Tag> lanes(d, world);
     const std::size_t nodes = model_.top_nodes;
     const TopBoxes* from = model_.top_boxes + nodes * at_.key0;
     const TopBoxes* to = model_.top_boxes + nodes * at_.key1;
@@ -353,7 +103,7 @@ class RayInModel {
       alignas(64) float order[kTopWidth];
       std::uint32_t entered = 0;
       for (std::size_t first = 0; first < kTopWidth; first += hn::Lanes(d))
-        entered |= ray.enter(d, hit_.t, order + first,
+        entered |= lanes.enter(d, ray_.hit().t, order + first,
                              [&](std::uint32_t row) {
                                const auto a = hn::Load(d, from[node].bounds[row] + first);
                                const auto b = hn::Load(d, to[node].bounds[row] + first);
@@ -375,156 +125,185 @@ class RayInModel {
     for (std::uint32_t i = 1; i <= model_.top_roots; ++i) open(model_.top_nodes - i);
     while (size > 0) {
       const WaitingChild next = stack[--size];
-      if (next.order > hit_.t) continue;
+      if (next.order > ray_.hit().t) continue;
       if (!next.child.is_leaf()) {
         open(next.child.index());
         continue;
       }
       enter_cluster(next.child.index());
-      if (finished()) return;
+      if (ray_.finished()) return;
     }
   }
 
   void enter_cluster(std::uint32_t c) {
     const RayTree& tree = trees_[c];
-    BoxRay local;
-    set_local(c, tree.bounds, local);
-    RayInTree ray(local, aim_, hit_);
+    const MappedRay mapped = map_into(c);
+    const FourFloats size = FourFloats::load(tree.size);
+    BoxRay local(mapped.origin, mapped.direction,
+                       mapped.stretch * FourFloats::all(ray_.slack()) +
+                           (abs(mapped.origin) + size) * FourFloats::all(0x1p-19f),
+                       std::min(0.0f, ray_.ray().t_min));
+    if (HWY_UNLIKELY(mapped.is_extreme || ray_.is_vast())) local.enter_all();
+    RayInTree ray(local, tree.nodes.data(), tree.blocks, ray_.aim(), ray_.hit());
     walk_bvh(tree.nodes, ray, [&](std::uint32_t block) {
-      const RayBlock* b = tree.blocks + block;
-      test_block(*b);
-      while (b->has_next) test_block(*++b);
+      test_leaf(ray_, tree.blocks + block, vertices_);
     });
   }
 
-  /// The ray in the cluster's basis.
-  void set_local(std::uint32_t c, const Aabb& bounds, BoxRay& local) const {
+  /// The ray in a cluster's basis.
+  HWY_INLINE MappedRay map_into(std::uint32_t c) const {
     const std::size_t clusters = model_.clusters;
     const std::size_t a = at_.key0 * clusters + c, b = at_.key1 * clusters + c;
     const std::uint8_t needed = at_.key0 == at_.key1 ? kRegularKey : kRegularInterval;
-    if ((model_.map_kinds[a] & needed) == 0) {
-      local = make_box_ray(
-          ray_, interpolate(model_.local_from_world[a], model_.local_from_world[b], at_.s), bounds,
-          static_cast<double>(slack_));
-      return;
+    if (HWY_LIKELY((model_.map_kinds[a] & needed) != 0)) {
+      MappedRay ray = map_ray(model_.key_maps[a], model_.key_maps[b], at_.s, ray_.ray().direction,
+                              ray_.ray().origin - to_double(model_.center));
+      ray.origin = ray.origin + four_of(model_.local_centers[c]);
+      return ray;
     }
-    // With rows X, Y, Z of world_from_local, its inverse has the columns Y x Z, Z x X, X x Y, over
-    // the determinant X . (Y x Z).
-    const KeyMap &from = model_.key_maps[a], &to = model_.key_maps[b];
-    double m[3][4];
-    for (int j = 0; j < 3; ++j)
-      for (int i = 0; i < 4; ++i)
-        m[j][i] = from.m[j][i] + (static_cast<double>(to.m[j][i]) - from.m[j][i]) * at_.s;
-    double column[3][3];
-    for (int j = 0; j < 3; ++j) {
-      const double *u = m[(j + 1) % 3], *v = m[(j + 2) % 3];
-      for (int k = 0; k < 3; ++k)
-        column[j][k] = u[(k + 1) % 3] * v[(k + 2) % 3] - u[(k + 2) % 3] * v[(k + 1) % 3];
-    }
-    const double scale =
-        1 / (m[0][0] * column[0][0] + m[0][1] * column[0][1] + m[0][2] * column[0][2]);
-    double origin[3] = {}, direction[3] = {}, stretch[3] = {};
-    for (std::size_t j = 0; j < 3; ++j) {
-      const double o = ray_.origin[j] - static_cast<double>(model_.center[j]) - m[j][3];
-      for (std::size_t k = 0; k < 3; ++k) {
-        origin[k] += column[j][k] * o;
-        direction[k] += column[j][k] * ray_.direction[j];
-        stretch[k] += std::abs(column[j][k]);
-      }
-    }
-    for (std::size_t k = 0; k < 3; ++k) {
-      const double o = origin[k] * scale + static_cast<double>(model_.local_centers[c][k]);
-      const auto d = static_cast<float>(direction[k] * scale);
-      const float size = static_cast<float>(std::abs(o)) +
-                         std::max(std::abs(bounds.lo[k]), std::abs(bounds.hi[k]));
-      const float slack = static_cast<float>(stretch[k] * std::abs(scale)) * slack_ +
-                          size * 0x1p-19f;
-      local.origin_for_low[k] = static_cast<float>(o) + slack;
-      local.origin_for_high[k] = static_cast<float>(o) - slack;
-      local.inverse[k] = 1 / (std::abs(d) < kShortest ? std::copysign(kShortest, d) : d);
-    }
-    local.t_begin = world_.t_begin;
+    return map_irregular(
+        interpolate(model_.local_from_world[a], model_.local_from_world[b], at_.s),
+        ray_.ray().direction, ray_.ray().origin);
   }
 
-  HWY_NOINLINE void test_block(const RayBlock& block) {
-    if (vertices_.from == nullptr)
-      vertices_ = {model_.poses->key(at_.key0), model_.poses->key(at_.key1), at_.s};
-    const FloatTag d;
-    Sixteen x, y, z, size;
-    const auto row_of = [&](const float (&row)[3], const Points<FloatTag>& p) {
-      return hn::MulAdd(hn::Set(d, row[0]), p.x,
-                        hn::MulAdd(hn::Set(d, row[1]), p.y, hn::Mul(hn::Set(d, row[2]), p.z)));
-    };
-    for (std::size_t part = 0; part < Sixteen::kParts; ++part) {
-      const Points<FloatTag> posed = pose(d, block.vertex + part * hn::Lanes(d), vertices_);
-      const Points<FloatTag> p{hn::Sub(posed.x, hn::Set(d, origin_[0])),
-                               hn::Sub(posed.y, hn::Set(d, origin_[1])),
-                               hn::Sub(posed.z, hn::Set(d, origin_[2]))};
-      const auto across = row_of(image_[0], p), down = row_of(image_[1], p);
-      x.set(part, across);
-      y.set(part, down);
-      z.set(part, row_of(image_[2], p));
-      size.set(part, hn::Max(hn::Abs(across), hn::Abs(down)));
-    }
-    const auto tolerance = hn::Set(d, tolerance_), square = hn::Mul(tolerance, tolerance);
-    std::uint32_t passed = 0;
-    for (std::size_t first = 0; first < block.count; first += hn::Lanes(d)) {
-      const hn::RebindToSigned<FloatTag> di;
-      const hn::Rebind<std::uint8_t, FloatTag> db;
-      const auto place = [&](std::size_t k) {
-        return hn::PromoteTo(di, hn::LoadU(db, block.corner[k] + first));
-      };
-      const auto a = place(0), b = place(1), c = place(2);
-      const auto ax = x.pick(a), ay = y.pick(a), bx = x.pick(b), by = y.pick(b), cx = x.pick(c),
-                 cy = y.pick(c);
-      const auto wa = hn::MulSub(bx, cy, hn::Mul(by, cx)), wb = hn::MulSub(cx, ay, hn::Mul(cy, ax)),
-                 wc = hn::MulSub(ax, by, hn::Mul(ay, bx));
-      const auto most = hn::Max(size.pick(a), hn::Max(size.pick(b), size.pick(c)));
-      const auto error = hn::MulAdd(most, tolerance, square);
-      const auto outside = hn::And(hn::Gt(hn::Max(wa, hn::Max(wb, wc)), error),
-                                   hn::Lt(hn::Min(wa, hn::Min(wb, wc)), hn::Neg(error)));
-      const auto az = z.pick(a), bz = z.pick(b), cz = z.pick(c);
-      const auto beyond = hn::Gt(hn::Min(az, hn::Min(bz, cz)), hn::Set(d, hit_.t + tolerance_));
-      const auto before =
-          hn::Lt(hn::Max(az, hn::Max(bz, cz)), hn::Set(d, ray_.t_min - tolerance_));
-      const auto rejected = hn::Or(outside, hn::Or(beyond, before));
-      passed |= (mask_bits(d, rejected) ^ ((1u << hn::Lanes(d)) - 1)) << first;
-    }
-    passed &= (1u << block.count) - 1;
-    while (passed != 0) {
-      alignas(64) std::uint32_t corner[3][kBvhWidth], triangle[kBvhWidth];
-      std::size_t count = 0;
-      for (; passed != 0 && count < hn::Lanes(DoubleTag()); passed &= passed - 1, ++count) {
-        const auto lane = static_cast<std::size_t>(__builtin_ctz(passed));
-        for (std::size_t k = 0; k < 3; ++k) corner[k][count] = block.vertex[block.corner[k][lane]];
-        triangle[count] = block.triangle[lane];
-      }
-      for (std::size_t i = count; i < hn::Lanes(DoubleTag()); ++i)
-        for (auto& row : corner) row[i] = row[0];
-      tester_.test({corner[0], corner[1], corner[2]}, triangle, count, vertices_);
-    }
-  }
-
-  static constexpr float kShortest = 1e-30f;
   static constexpr std::size_t kMaxTopDepth = 9;  // 16^8 clusters
 
   const RayModel& model_;
-  const WorldRay& ray_;
   const KeyInterval& at_;
-  const RayAim aim_;
-  RayHit& hit_;
-  RayTester tester_;
   const RayTree* trees_ = nullptr;
-  VertexSource vertices_{nullptr, nullptr, 0};
-  float origin_[3], direction_[3];
-  float reach_, slack_;
-  BoxRay world_;
-  float image_[3][3], tolerance_;  ///< rows of the map into the image, and R
+  RayAndBlocks ray_;
+  KeyVertices vertices_;
 };
 
-void TraceRay(const RayModel& model, const WorldRay& ray, const KeyInterval& at,
-              std::uint32_t segment, RayAim aim, RayHit& hit) {
-  RayInModel(model, ray, at, aim, hit).trace(segment);
+/// The vertices of posed blocks.
+class PosedVertices {
+ public:
+  explicit PosedVertices(const PosedScene& scene) : scene_(scene) {}
+
+  template <class D>
+  HWY_INLINE Points<D> points(D d, const RayBlock& block, std::size_t first) const {
+    const PosedRayBlock& posed = of(block);
+    return {hn::Load(d, posed.x + first), hn::Load(d, posed.y + first),
+            hn::Load(d, posed.z + first)};
+  }
+  HWY_INLINE Vec3f position(const RayBlock& block, std::size_t place) const {
+    const PosedRayBlock& posed = of(block);
+    return {posed.x[place], posed.y[place], posed.z[place]};
+  }
+
+ private:
+  HWY_INLINE const PosedRayBlock& of(const RayBlock& block) const {
+    return scene_.posed[&block - scene_.blocks];
+  }
+  const PosedScene& scene_;
+};
+
+QueryHit TraceRay(const RayModel& model, const QueryRay& ray, const KeyInterval& at,
+                  std::uint32_t segment, RayAim aim) {
+  const ScaledRay scaled(ray);
+  if (!scaled.usable) return {};
+  RayHit hit = scaled.nothing_yet();
+  RayInModel(model, scaled, at, aim, hit).trace(segment);
+  return scaled.in_callers_lengths(hit);
+}
+
+/// A bit for each of as many rays as a vector holds that may enter the model's bounds, its slack
+/// included: what is told for certain, of rays of ordinary lengths.
+HWY_INLINE std::uint32_t may_enter(const RayModel& model, const QueryRay* rays, std::size_t count) {
+  const FloatTag d;
+  alignas(64) float part[8][hn::MaxLanes(FloatTag())] = {};
+  static_assert(sizeof(QueryRay) == 8 * sizeof(float));
+  for (std::size_t i = 0; i < count; ++i) {
+    float numbers[8];
+    std::memcpy(numbers, &rays[i], sizeof numbers);
+    for (std::size_t k = 0; k < 8; ++k) part[k][i] = numbers[k];
+  }
+  const Points<FloatTag> o{hn::Load(d, part[0]), hn::Load(d, part[1]), hn::Load(d, part[2])},
+      v{hn::Load(d, part[3]), hn::Load(d, part[4]), hn::Load(d, part[5])};
+  const Points<FloatTag> away = broadcast(d, model.center) - o;
+  const auto reach = hn::Add(sum_of_sizes(away), hn::Set(d, model.diagonal));
+  const auto longest = hn::Max(hn::Abs(v.x), hn::Max(hn::Abs(v.y), hn::Abs(v.z)));
+  const auto shortest = hn::Mul(longest, hn::Set(d, 0x1p-40f));
+  auto near = hn::Min(hn::Zero(d), hn::Load(d, part[6])), far = hn::Load(d, part[7]);
+  const auto cut = [&](hn::Vec<FloatTag> origin, hn::Vec<FloatTag> direction, float lo, float hi) {
+    const float side = std::max(std::abs(lo), std::abs(hi));
+    const auto slack = hn::Mul(hn::Add(reach, hn::Add(hn::Abs(origin), hn::Set(d, side))),
+                               hn::Set(d, 0x1p-18f));
+    const auto inverse = hn::Div(
+        hn::Set(d, 1.0f), hn::CopySign(hn::Max(hn::Abs(direction), shortest), direction));
+    const auto a = hn::Mul(hn::Sub(hn::Sub(hn::Set(d, lo), slack), origin), inverse);
+    const auto b = hn::Mul(hn::Sub(hn::Add(hn::Set(d, hi), slack), origin), inverse);
+    near = hn::Max(near, hn::Min(a, b));
+    far = hn::Min(far, hn::Max(a, b));
+  };
+  cut(o.x, v.x, model.bounds.lo.x, model.bounds.hi.x);
+  cut(o.y, v.y, model.bounds.lo.y, model.bounds.hi.y);
+  cut(o.z, v.z, model.bounds.lo.z, model.bounds.hi.z);
+  const auto ordinary = hn::And(
+      hn::Lt(reach, hn::Set(d, kLargestReach)),
+      hn::And(hn::Gt(longest, hn::Set(d, 0x1p-40f)), hn::Lt(longest, hn::Set(d, 0x1p40f))));
+  const std::uint32_t missed = mask_bits(d, hn::And(ordinary, hn::Gt(near, far)));
+  return ~missed & ((1u << count) - 1);
+}
+
+void TraceRays(const RayModel& model, const QueryRay* rays, const KeyInterval* times,
+               const std::uint32_t* segments, RayAim aim, QueryHit* hits, std::size_t count) {
+  const std::size_t lanes = hn::Lanes(FloatTag());
+  for (std::size_t first = 0; first < count; first += lanes) {
+    const std::size_t some = std::min(lanes, count - first);
+    const std::uint32_t entering = may_enter(model, rays + first, some);
+    for (std::size_t i = 0; i < some; ++i)
+      hits[first + i] = (entering >> i & 1u) != 0 ? TraceRay(model, rays[first + i],
+                                                             times[first + i],
+                                                             segments[first + i], aim)
+                                                  : QueryHit{};
+  }
+}
+
+QueryHit TracePosed(const PosedScene& scene, const QueryRay& ray, RayAim aim) {
+  const ScaledRay scaled(ray);
+  if (!scaled.usable) return {};
+  RayHit hit = scaled.nothing_yet();
+  RayAndBlocks traced(scaled, scene.center, scene.diagonal, aim, hit);
+  const FourFloats lo = FourFloats::load(scene.bounds.lo), hi = FourFloats::load(scene.bounds.hi);
+  const FourFloats size = abs(traced.origin()) + max(abs(lo), abs(hi));
+  BoxRay world(traced.origin(), traced.direction(),
+               FourFloats::all(traced.slack()) + size * FourFloats::all(0x1p-19f),
+               std::min(0.0f, scaled.ray.t_min));
+  if (HWY_UNLIKELY(traced.is_vast())) world.enter_all();
+  if (world.enters(lo, hi, hit.t)) {
+    traced.prepare();
+    const PosedVertices vertices(scene);
+    RayInTree in_tree(world, scene.nodes.data(), scene.blocks, aim, hit);
+    walk_bvh(scene.nodes, in_tree,
+             [&](std::uint32_t block) { test_leaf(traced, scene.blocks + block, vertices); });
+  }
+  return scaled.in_callers_lengths(hit);
+}
+
+void PoseBlocks(std::span<const RayBlock> blocks, const VertexSource& source,
+                PosedRayBlock* posed, Aabb* boxes) {
+  const FloatTag d;
+  const auto infinity = hn::Set(d, std::numeric_limits<float>::infinity());
+  for (std::size_t b = 0; b < blocks.size(); ++b) {
+    Points<FloatTag> lo{infinity, infinity, infinity},
+        hi{hn::Neg(infinity), hn::Neg(infinity), hn::Neg(infinity)};
+    for (std::size_t first = 0; first < kBlockVertices; first += hn::Lanes(d)) {
+      const Points<FloatTag> p = pose(d, blocks[b].vertex + first, source);
+      store(d, p, posed[b].x + first, posed[b].y + first, posed[b].z + first);
+      const auto finite = hn::And(hn::Lt(hn::Abs(p.x), infinity),
+                                  hn::And(hn::Lt(hn::Abs(p.y), infinity),
+                                          hn::Lt(hn::Abs(p.z), infinity)));
+      const auto low = [&](auto v) { return hn::IfThenElse(finite, v, infinity); };
+      const auto high = [&](auto v) { return hn::IfThenElse(finite, v, hn::Neg(infinity)); };
+      lo = {hn::Min(lo.x, low(p.x)), hn::Min(lo.y, low(p.y)), hn::Min(lo.z, low(p.z))};
+      hi = {hn::Max(hi.x, high(p.x)), hn::Max(hi.y, high(p.y)), hn::Max(hi.z, high(p.z))};
+    }
+    const auto least = [&](auto v) { return hn::GetLane(hn::MinOfLanes(d, v)); };
+    const auto most = [&](auto v) { return hn::GetLane(hn::MaxOfLanes(d, v)); };
+    boxes[b] = {{least(lo.x), least(lo.y), least(lo.z)}, {most(hi.x), most(hi.y), most(hi.z)}};
+    if (boxes[b].empty()) boxes[b] = {{0, 0, 0}, {0, 0, 0}};
+  }
 }
 
 void TestBlocks(const WorldRay& ray, std::span<const TriangleBlock> blocks,
@@ -538,7 +317,7 @@ void TestBlocks(const WorldRay& ray, std::span<const TriangleBlock> blocks,
 }
 
 }  // namespace rays
-using rays::TestBlocks, rays::TraceRay;
+using rays::PoseBlocks, rays::TestBlocks, rays::TracePosed, rays::TraceRay, rays::TraceRays;
 }  // namespace HWY_NAMESPACE
 }  // namespace mdk
 HWY_AFTER_NAMESPACE();
@@ -546,39 +325,29 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace mdk {
 
-HWY_EXPORT(TraceRay);
+HWY_EXPORT(PoseBlocks);
 HWY_EXPORT(TestBlocks);
+HWY_EXPORT(TracePosed);
+HWY_EXPORT(TraceRay);
+HWY_EXPORT(TraceRays);
 
-BoxRay make_box_ray(const WorldRay& world, const Affine3d& local_from_world, const Aabb& bounds,
-                    double world_slack) {
-  const Vec3d local_origin = local_from_world.point(world.origin);
-  const Vec3d local_direction = local_from_world.vector(world.direction);
-  const double longest = std::max(
-      {std::abs(local_direction.x), std::abs(local_direction.y), std::abs(local_direction.z)});
-  // A component so small moves the ray by less than the slack on its way to anything; kept from
-  // zero, its inverse is finite and no product is without a value.
-  const double shortest = std::max(longest * 0x1p-40, 1e-30);
-  BoxRay ray;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const double* row = local_from_world.m[k];
-    const double stretch = std::abs(row[0]) + std::abs(row[1]) + std::abs(row[2]);
-    const double size =
-        std::abs(local_origin[k]) + std::max(std::abs(static_cast<double>(bounds.lo[k])),
-                                             std::abs(static_cast<double>(bounds.hi[k])));
-    const double slack = stretch * world_slack + size * 0x1p-19;
-    ray.origin_for_low[k] = static_cast<float>(local_origin[k] + slack);
-    ray.origin_for_high[k] = static_cast<float>(local_origin[k] - slack);
-    const double component = local_direction[k];
-    ray.inverse[k] = static_cast<float>(
-        1 / (std::abs(component) < shortest ? std::copysign(shortest, component) : component));
-  }
-  ray.t_begin = std::min(0.0f, world.t_min);
-  return ray;
+QueryHit trace_ray(const RayModel& model, const QueryRay& ray, const KeyInterval& at,
+                   std::uint32_t segment, RayAim aim) {
+  return HWY_DYNAMIC_DISPATCH(TraceRay)(model, ray, at, segment, aim);
 }
 
-void trace_ray(const RayModel& model, const WorldRay& ray, const KeyInterval& at,
-               std::uint32_t segment, RayAim aim, RayHit& hit) {
-  HWY_DYNAMIC_DISPATCH(TraceRay)(model, ray, at, segment, aim, hit);
+void trace_rays(const RayModel& model, const QueryRay* rays, const KeyInterval* times,
+                const std::uint32_t* segments, RayAim aim, QueryHit* hits, std::size_t count) {
+  HWY_DYNAMIC_DISPATCH(TraceRays)(model, rays, times, segments, aim, hits, count);
+}
+
+QueryHit trace_posed(const PosedScene& scene, const QueryRay& ray, RayAim aim) {
+  return HWY_DYNAMIC_DISPATCH(TracePosed)(scene, ray, aim);
+}
+
+void pose_blocks(std::span<const RayBlock> blocks, const VertexSource& source,
+                 PosedRayBlock* posed, Aabb* boxes) {
+  HWY_DYNAMIC_DISPATCH(PoseBlocks)(blocks, source, posed, boxes);
 }
 
 void test_blocks(const WorldRay& ray, std::span<const TriangleBlock> blocks,
