@@ -205,8 +205,14 @@ struct ModelStorage : ModelLists<OwnedList, ScratchList> {
 /// it. Of a model that does not hold between keys, the nearest key. Cost: O(log keys).
 KeyInterval locate_time(const ModelView& model, std::uint32_t clip, double seconds);
 
+/// A time brought into a clip of D seconds: in [0, D], 0 for a phase that is not finite.
+double wrapped_time(double phase, double seconds, ClipWrap wrap);
+
 /// Exactly at a key.
 inline KeyInterval at_key(std::uint32_t key) { return {key, key, 0.0f}; }
+
+/// Whether locate_time() or at_key() may give this.
+bool has_time(const ModelView& model, const KeyInterval& time);
 
 /// The segment whose boxes hold at a moment; at a key that two segments share, the earlier one.
 /// Cost: O(log segments).

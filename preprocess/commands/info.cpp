@@ -149,7 +149,7 @@ void print_json(const MdkFile& file, const InfoArguments& arguments) {
   for (const Texture& texture : model.appearance.textures)
     textures.push_back({{"width", texture.width}, {"height", texture.height}});
   Json sections = Json::array();
-  for (const MdkSectionInfo& section : file.sections())
+  for (const SectionInfo& section : file.sections())
     sections.push_back({{"name", section.name}, {"bytes", section.bytes}});
   const ClusterSizes sizes = cluster_sizes(model);
   Json info = {
@@ -259,7 +259,7 @@ void print_tables(const MdkFile& file) {
                    std::to_string(clip.first_key + clip.key_count - 1)});
   TextTable sections(1);
   sections.add_row({"section", "bytes"});
-  for (const MdkSectionInfo& section : file.sections())
+  for (const SectionInfo& section : file.sections())
     sections.add_row({section.name, grouped_text(section.bytes)});
   std::cout << "\n";
   clips.print(std::cout);

@@ -4,10 +4,12 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <bit>
 #include <cmath>
 #include <numbers>
 #include <random>
+#include <thread>
 
 #include "common/base/error.h"
 #include "common/base/isa.h"
@@ -243,6 +245,83 @@ TEST(RayQuery, ATimeBetweenKeysIsRefusedWhereBoxesHoldAtKeysOnly) {
   EXPECT_THROW(query.prepare(between), Error);
 }
 
+TEST(RayQuery, AMomentGivesBruteForcesHitsBeforeAndAfterItIsPosed) {
+  const ResetIsa reset;
+  for (auto& [name, sequence] : test::agreement_scenes()) {
+    const DecomposeResult baked = bake(std::move(sequence));
+    const ModelView model = baked.model.view();
+    const RayQuery query(ModelHandle::make(model));
+    RayMaker make(model, 17);
+    // The first moment makes the hierarchy, the second is refitted to another time.
+    for (const KeyInterval& at : {make.time(), make.time()}) {
+      const QueryMoment moment = query.prepare(at);
+      const std::size_t before = query.bytes();
+      std::vector<QueryRay> rays;
+      std::vector<QueryHit> expected;
+      for (int i = 0; i < 150; ++i) {
+        rays.push_back(make.ray(at));
+        expected.push_back(brute_force_closest_hit(model, rays.back(), at));
+      }
+      for (int round = 0; round < 2 || query.bytes() == before; ++round) {
+        ASSERT_LT(round, 100'000) << name << " is never posed";
+        for (std::size_t i = 0; i < rays.size(); ++i) {
+          limit_isa(available_isas()[i % available_isas().size()]);
+          ASSERT_TRUE(is_same(query.closest_hit(rays[i], moment), expected[i])) << name << i;
+        }
+      }
+      for (const std::string_view isa : available_isas()) {
+        limit_isa(isa);
+        for (std::size_t i = 0; i < rays.size(); ++i) {
+          ASSERT_TRUE(is_same(query.closest_hit(rays[i], moment), expected[i])) << name << i;
+          ASSERT_EQ(query.any_hit(rays[i], moment), expected[i].is_hit()) << name << i << isa;
+        }
+      }
+      reset_isa();
+    }
+  }
+}
+
+TEST(RayQuery, PosesStayWithinTheirLimitAndHitsAreTheSame) {
+  // Quantised, so that poses are decoded; room for three keys of many.
+  DecomposeOptions options;
+  options.quantize = 1e-4;
+  SilentProgress silent;
+  const DecomposeResult baked = decompose(test::bending_tube(20, 16, 24), options, silent);
+  const ModelView model = baked.model.view();
+  ASSERT_NE(model.poses.kind, PoseKind::kKeyPositions);
+  const std::size_t key_bytes = (model.vertex_count + 1) * sizeof(Vec3f);
+  const RayQuery all(ModelHandle::make(model)),
+      few(ModelHandle::make(model), RayQueryOptions{.max_pose_bytes = 3 * key_bytes});
+  const std::size_t all_before = all.bytes(), few_before = few.bytes();
+  RayMaker make(model, 31);
+  std::vector<QueryRay> rays;
+  std::vector<KeyInterval> times;
+  for (int i = 0; i < 3000; ++i) {
+    times.push_back(make.time());
+    rays.push_back(make.ray(times.back()));
+  }
+  std::vector<QueryHit> expected(rays.size()), hits(rays.size());
+  all.closest_hits(rays.data(), times.data(), expected.data(), rays.size());
+  for (const int threads : {1, 2}) {
+    const ThreadLimit limit(threads);
+    few.closest_hits(rays.data(), times.data(), hits.data(), rays.size());
+    for (std::size_t i = 0; i < rays.size(); ++i) EXPECT_TRUE(is_same(hits[i], expected[i])) << i;
+  }
+  // Threads that are not ours, more than there are places for.
+  std::vector<std::thread> others;
+  std::atomic<int> different = 0;
+  for (int t = 0; t < 6; ++t)
+    others.emplace_back([&, t] {
+      for (std::size_t i = static_cast<std::size_t>(t); i < rays.size(); i += 6)
+        different += is_same(few.closest_hit(rays[i], times[i]), expected[i]) ? 0 : 1;
+    });
+  for (std::thread& thread : others) thread.join();
+  EXPECT_EQ(different, 0);
+  EXPECT_EQ(all.bytes() - all_before, model.key_count() * key_bytes);
+  EXPECT_LE(few.bytes() - few_before,
+            std::max(3u, 2 * static_cast<unsigned>(thread_count())) * key_bytes);
+}
+
 TEST(RayQuery, RaysWithoutDirectionOrSenseHitNothing) {
   const DecomposeResult baked = bake(test::bending_tube(10, 8, 2));
   const ModelView model = baked.model.view();
@@ -253,6 +332,36 @@ TEST(RayQuery, RaysWithoutDirectionOrSenseHitNothing) {
                               QueryRay{inside, {inf, 0, 0}}, QueryRay{{nan, 0, 0}, {1, 0, 0}},
                               QueryRay{inside, {1, 0, 0}, 1, 1}, QueryRay{inside, {1, 0, 0}, nan}})
     EXPECT_FALSE(query.any_hit(ray, at_key(0)));
+}
+
+TEST(RayQuery, DirectionsOfAnyLengthGiveAFiniteDepthOrNone) {
+  const ResetIsa reset;
+  const DecomposeResult baked = bake(test::bending_tube(10, 8, 2));
+  const ModelView model = baked.model.view();
+  const RayQuery query(ModelHandle::make(model));
+  const std::vector<Vec3f> vertices = vertices_at(model, at_key(0));
+  const Triangle& aimed_at = model.triangles[40];
+  const Vec3f on_it =
+      (vertices[aimed_at.v[0]] + vertices[aimed_at.v[1]] + vertices[aimed_at.v[2]]) * (1.0f / 3);
+  const Vec3f outside = on_it - Vec3f{0, 0, 10};
+  int near = 0, far = 0;
+  for (int exponent = -149; exponent <= 127; ++exponent) {
+    const QueryRay ray{outside, Vec3f{0, 0, std::ldexp(1.0f, exponent)}};
+    const QueryHit expected = brute_force_closest_hit(model, ray, at_key(0));
+    // A wall that is farther than the largest float, in lengths of the direction, is not hit.
+    EXPECT_EQ(std::isfinite(expected.t), expected.is_hit()) << exponent;
+    (expected.is_hit() ? near : far) += 1;
+    for (const std::string_view isa : available_isas()) {
+      limit_isa(isa);
+      EXPECT_TRUE(is_same(query.closest_hit(ray, at_key(0)), expected)) << exponent << isa;
+      EXPECT_EQ(query.any_hit(ray, at_key(0)), expected.is_hit()) << exponent << isa;
+    }
+    reset_isa();
+  }
+  EXPECT_GT(near, 200);
+  EXPECT_GT(far, 10);
+  const QueryRay reported{on_it + Vec3f{0, 0, 10}, {0, 0, -1e-40f}};
+  EXPECT_FALSE(query.closest_hit(reported, at_key(0)).is_hit());
 }
 
 /// Whether a point is inside the closed mesh: by the crossings of rays in three odd directions,

@@ -1,201 +1,323 @@
-// The triangle test of single rays, in double. With corners a, b, c seen from the ray's origin, the
-// weight of c at the direction d is ((b - a) x (b + a)) . d, exactly negated when a and b change
-// places: two triangles that share an edge agree on which side the ray passes.
-//
-//     hit where the three weights have one sign, each give or take its rounding: also a ray that
-//     passes a vertex exactly, where all signs are rounding, hits one of the triangles around it
-//     p = (w_a a + w_b b + w_c c) / (w_a + w_b + w_c)      weights of the wrong sign count as 0, so
-//                                                          p is on the triangle in any case
-//     t = p.d / d.d                                        and p must lie close to the ray
-//
-// The last clause does nothing for triangles of sane shape. For slivers, whose weights are all
-// rounding, it keeps hits where any box around the triangle shows them.
+// How a single ray goes through a model at a time of its own, or through one that was posed.
 #include "common/trace/kernels/ray_kernels.h"
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "common/trace/kernels/ray_kernels.cpp"
 #include <hwy/foreach_target.h>
+#include <hwy/cache_control.h>
 #include <hwy/highway.h>
 // after highway.h
+#include "common/trace/kernels/ray_boxes-inl.h"
+#include "common/trace/kernels/ray_test-inl.h"
 #include "common/trace/kernels/walk-inl.h"
+#include "common/trace/query_keys.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace mdk {
 namespace HWY_NAMESPACE {
 namespace rays {
 
-using DoubleTag = hn::CappedTag<double, kBvhWidth>;
-using DoubleVec = hn::Vec<DoubleTag>;
-using DoublePoints = Points<DoubleTag>;
-
-struct Weight {
-  DoubleVec value;
-  DoubleVec error;  ///< no less than what rounding may have done to the value
-};
-
-/// ((b - a) x (b + a)) . d; `rounding` is kRounding times the largest component of d.
-HWY_INLINE Weight edge_weight(const DoublePoints& a, const DoublePoints& b, const DoublePoints& d,
-                              DoubleVec rounding) {
-  const DoublePoints u = b - a, v = b + a;
-  return {dot(cross(u, v), d), hn::Mul(hn::Mul(sum_of_sizes(u), sum_of_sizes(v)), rounding)};
+HWY_INLINE FourFloats four_of(const Vec3f& v) {
+  const float f[4] = {v.x, v.y, v.z, 0};
+  return FourFloats::load(f);
 }
 
-/// About twenty roundings of 2^-53 each, relative to the sizes of all factors.
-constexpr double kRounding = 0x1p-48;
+/// All blocks of a leaf.
+template <class Vertices>
+HWY_INLINE void test_leaf(RayAndBlocks& ray, const RayBlock* block, const Vertices& vertices) {
+  ray.test(*block, vertices);
+  while (block->has_next) ray.test(*++block, vertices);
+}
 
-/// A ray on its way down one tree (walk-inl.h).
-class RayInTree {
+/// Vertices between two keys, which are decoded when the first block asks for one, and held until
+/// the ray is done.
+class KeyVertices {
  public:
-  RayInTree(const BoxRay& ray, RayAim aim, const RayHit& hit) : ray_(ray), aim_(aim), hit_(hit) {}
-
-  HWY_INLINE std::uint32_t enter(const WideBvhNode& node, float (&order)[kBvhWidth]) const {
-    const hn::CappedTag<float, kBvhWidth> d;
-    std::uint32_t entered = 0;
-    for (std::size_t first = 0; first < kBvhWidth; first += hn::Lanes(d)) {
-      Slabs slabs(d, ray_.t_begin, hit_.t);
-      for (std::size_t axis = 0; axis < 3; ++axis)
-        slabs.cut(d, ray_, axis, hn::Load(d, node.bounds[2 * axis] + first),
-                  hn::Load(d, node.bounds[2 * axis + 1] + first));
-      hn::Store(slabs.near, d, order + first);
-      entered |= slabs.entered(d) << first;
-    }
-    return entered & ((1u << node.count) - 1);
+  KeyVertices(const KeyPoses& poses, const KeyInterval& at) : poses_(poses), at_(at) {}
+  ~KeyVertices() {
+    if (source_.from != nullptr) poses_.release(at_);
   }
-  bool is_past(float order) const { return order > hit_.t; }
-  bool finished() const { return aim_ == RayAim::kAny && hit_.triangle != kNoHit; }
+  KeyVertices(const KeyVertices&) = delete;
+  KeyVertices& operator=(const KeyVertices&) = delete;
+
+  template <class D>
+  HWY_INLINE Points<D> points(D d, const RayBlock& block, std::size_t first) const {
+    if (HWY_UNLIKELY(source_.from == nullptr)) source_ = poses_.acquire(at_);
+    return pose(d, block.vertex + first, source_);
+  }
+  HWY_INLINE Vec3f position(const RayBlock& block, std::size_t place) const {
+    return source_.position(block.vertex[place]);
+  }
 
  private:
-  const BoxRay& ray_;
-  RayAim aim_;
-  const RayHit& hit_;
+  const KeyPoses& poses_;
+  const KeyInterval& at_;
+  mutable VertexSource source_{nullptr, nullptr, 0};
 };
 
-/// One ray against blocks of triangles.
-class RayTester {
+/// One ray on its way through a model.
+class RayInModel {
  public:
-  RayTester(const WorldRay& ray, const VertexSource& vertices, RayHit& hit)
-      : ray_(ray),
-        vertices_(vertices),
-        hit_(hit),
-        direction_square_(dot(ray.direction, ray.direction)),
-        rounding_(kRounding * std::max({std::abs(ray.direction.x), std::abs(ray.direction.y),
-                                        std::abs(ray.direction.z)})) {}
+  RayInModel(const RayModel& model, const ScaledRay& ray, const KeyInterval& at, RayAim aim,
+             RayHit& hit)
+      : model_(model),
+        at_(at),
+        ray_(ray, model.center, model.diagonal, aim, hit),
+        vertices_(*model.poses, at) {}
 
-  void test(const TriangleBlock& block) {
-    const std::size_t lanes = hn::Lanes(DoubleTag());
-    for (std::size_t first = 0; first < block.count; first += lanes) test_lanes(block, first);
-  }
-
- private:
-  HWY_INLINE DoublePoints corner(const std::uint32_t* index) const {
-    const DoubleTag d;
-    alignas(64) double x[kBvhWidth], y[kBvhWidth], z[kBvhWidth];
-    for (std::size_t i = 0; i < hn::Lanes(d); ++i) {
-      const Vec3d v = to_double(vertices_.position(index[i])) - ray_.origin;
-      x[i] = v.x;
-      y[i] = v.y;
-      z[i] = v.z;
-    }
-    return {hn::Load(d, x), hn::Load(d, y), hn::Load(d, z)};
-  }
-
-  HWY_INLINE void test_lanes(const TriangleBlock& block, std::size_t first) {
-    const DoubleTag d;
-    const DoublePoints a = corner(block.corner[0] + first), b = corner(block.corner[1] + first),
-                       c = corner(block.corner[2] + first);
-    const DoublePoints direction = broadcast(d, ray_.direction);
-    const auto rounding = hn::Set(d, rounding_);
-    const Weight wa = edge_weight(b, c, direction, rounding),
-                 wb = edge_weight(c, a, direction, rounding),
-                 wc = edge_weight(a, b, direction, rounding);
-    const auto zero = hn::Zero(d);
-    const auto side = hn::CopySign(hn::Set(d, 1.0), hn::Add(hn::Add(wa.value, wb.value), wc.value));
-    const auto is_inner = [&](const Weight& w) {
-      return hn::Ge(hn::Mul(w.value, side), hn::Neg(w.error));
+  void trace(std::uint32_t segment) {
+    trees_ = model_.trees + std::size_t{segment} * model_.clusters;
+    const FourFloats s = FourFloats::all(at_.s);
+    const KeyBox &from = model_.key_boxes[at_.key0], &to = model_.key_boxes[at_.key1];
+    const auto side = [&](const float (&a)[4], const float (&b)[4]) {
+      return FourFloats::load(a) + (FourFloats::load(b) - FourFloats::load(a)) * s;
     };
-    const auto inside = hn::And(hn::And(is_inner(wa), is_inner(wb)), is_inner(wc));
-    if (hn::AllFalse(d, inside)) return;
+    const FourFloats lo = side(from.lo, to.lo), hi = side(from.hi, to.hi);
+    // No box of this time reaches farther.
+    const FourFloats size = abs(ray_.origin()) + max(abs(lo), abs(hi));
+    BoxRay world(ray_.origin(), ray_.direction(),
+                 FourFloats::all(ray_.slack()) + size * FourFloats::all(0x1p-19f),
+                 std::min(0.0f, ray_.ray().t_min));
+    if (HWY_UNLIKELY(ray_.is_vast())) world.enter_all();
+    if (!world.enters(lo, hi, ray_.hit().t)) return;
+    ray_.prepare();
+    walk_top(world);
+  }
 
-    const auto share_of = [&](const Weight& w) { return hn::Max(hn::Mul(w.value, side), zero); };
-    const auto sa = share_of(wa), sb = share_of(wb), sc = share_of(wc);
-    const auto total = hn::Add(hn::Add(sa, sb), sc);
-    const auto share = hn::Div(hn::Set(d, 1.0), total);
-    const DoublePoints p = scaled(scaled(a, sa) + scaled(b, sb) + scaled(c, sc), share);
-    const auto t = hn::Div(dot(p, direction), hn::Set(d, direction_square_));
-    const DoublePoints off = p - scaled(direction, t);
-    const auto close = hn::Le(dot(off, off), hn::Mul(dot(p, p), hn::Set(d, 0x1p-40)));
-    // Written so that a corner that is not a number fails it.
-    const auto hit = hn::And(inside, hn::And(close, hn::Gt(total, zero)));
-    std::uint32_t lanes = mask_bits(d, hit);
-    if (first + hn::Lanes(d) > block.count) lanes &= (1u << (block.count - first)) - 1;
-    if (lanes == 0) return;
-
-    alignas(64) double depth[kBvhWidth], bary1[kBvhWidth], bary2[kBvhWidth];
-    hn::Store(t, d, depth);
-    hn::Store(hn::Mul(sb, share), d, bary1);
-    hn::Store(hn::Mul(sc, share), d, bary2);
-    for (; lanes != 0; lanes &= lanes - 1) {
-      const auto i = static_cast<std::size_t>(__builtin_ctz(lanes));
-      const auto at = static_cast<float>(depth[i]);
-      const std::uint32_t triangle = block.triangle[first + i];
-      const bool is_closer = at < hit_.t || (at == hit_.t && triangle < hit_.triangle);
-      if (!(at > ray_.t_min) || !is_closer) continue;
-      hit_ = {at, triangle, static_cast<float>(bary1[i]), static_cast<float>(bary2[i])};
+ private:
+  void walk_top(const BoxRay& world) {
+    using Tag = hn::CappedTag<float, kTopWidth>;
+    const Tag d;
+    const LaneRay<Tag> lanes(d, world);
+    const std::size_t nodes = model_.top_nodes;
+    const TopBoxes* from = model_.top_boxes + nodes * at_.key0;
+    const TopBoxes* to = model_.top_boxes + nodes * at_.key1;
+    const auto s = hn::Set(d, at_.s);
+    WaitingChild stack[kTopWidth * kMaxTopDepth];
+    std::size_t size = 0;
+    const auto open = [&](std::uint32_t node) {
+      alignas(64) float order[kTopWidth];
+      std::uint32_t entered = 0;
+      for (std::size_t first = 0; first < kTopWidth; first += hn::Lanes(d))
+        entered |= lanes.enter(d, ray_.hit().t, order + first,
+                             [&](std::uint32_t row) {
+                               const auto a = hn::Load(d, from[node].bounds[row] + first);
+                               const auto b = hn::Load(d, to[node].bounds[row] + first);
+                               return hn::Add(a, hn::Mul(hn::Sub(b, a), s));
+                             })
+                   << first;
+      const TopLinks& links = model_.top_links[node];
+      entered &= (1u << links.count) - 1;
+      const std::size_t bottom = size;
+      for (; entered != 0; entered &= entered - 1) {
+        const auto c = static_cast<std::size_t>(__builtin_ctz(entered));
+        const WaitingChild child{order[c], links.child[c]};
+        std::size_t place = size++;
+        for (; place > bottom && stack[place - 1].order < child.order; --place)
+          stack[place] = stack[place - 1];
+        stack[place] = child;
+      }
+    };
+    for (std::uint32_t i = 1; i <= model_.top_roots; ++i) open(model_.top_nodes - i);
+    while (size > 0) {
+      const WaitingChild next = stack[--size];
+      if (next.order > ray_.hit().t) continue;
+      if (!next.child.is_leaf()) {
+        open(next.child.index());
+        continue;
+      }
+      enter_cluster(next.child.index());
+      if (ray_.finished()) return;
     }
   }
 
-  const WorldRay& ray_;
-  const VertexSource& vertices_;
-  RayHit& hit_;
-  double direction_square_, rounding_;
+  void enter_cluster(std::uint32_t c) {
+    const RayTree& tree = trees_[c];
+    const MappedRay mapped = map_into(c);
+    const FourFloats size = FourFloats::load(tree.size);
+    BoxRay local(mapped.origin, mapped.direction,
+                       mapped.stretch * FourFloats::all(ray_.slack()) +
+                           (abs(mapped.origin) + size) * FourFloats::all(0x1p-19f),
+                       std::min(0.0f, ray_.ray().t_min));
+    if (HWY_UNLIKELY(mapped.is_extreme || ray_.is_vast())) local.enter_all();
+    RayInTree ray(local, tree.nodes.data(), tree.blocks, ray_.aim(), ray_.hit());
+    walk_bvh(tree.nodes, ray, [&](std::uint32_t block) {
+      test_leaf(ray_, tree.blocks + block, vertices_);
+    });
+  }
+
+  /// The ray in a cluster's basis.
+  HWY_INLINE MappedRay map_into(std::uint32_t c) const {
+    const std::size_t clusters = model_.clusters;
+    const std::size_t a = at_.key0 * clusters + c, b = at_.key1 * clusters + c;
+    const std::uint8_t needed = at_.key0 == at_.key1 ? kRegularKey : kRegularInterval;
+    if (HWY_LIKELY((model_.map_kinds[a] & needed) != 0)) {
+      MappedRay ray = map_ray(model_.key_maps[a], model_.key_maps[b], at_.s, ray_.ray().direction,
+                              ray_.ray().origin - to_double(model_.center));
+      ray.origin = ray.origin + four_of(model_.local_centers[c]);
+      return ray;
+    }
+    return map_irregular(
+        interpolate(model_.local_from_world[a], model_.local_from_world[b], at_.s),
+        ray_.ray().direction, ray_.ray().origin);
+  }
+
+  static constexpr std::size_t kMaxTopDepth = 9;  // 16^8 clusters
+
+  const RayModel& model_;
+  const KeyInterval& at_;
+  const RayTree* trees_ = nullptr;
+  RayAndBlocks ray_;
+  KeyVertices vertices_;
 };
 
-std::size_t EnterBoxes(const BoxRay& ray, const MovingBoxes& boxes, float t_max,
-                       EnteredBox* entered) {
-  const hn::CappedTag<float, kMovingBoxLanes> d;
-  const auto s = hn::Set(d, boxes.s);
-  const auto row_at = [&](std::size_t row, std::size_t first) {
-    const auto from = hn::LoadU(d, boxes.from + row * boxes.stride + first);
-    const auto to = hn::LoadU(d, boxes.to + row * boxes.stride + first);
-    return hn::Add(from, hn::Mul(hn::Sub(to, from), s));
-  };
-  alignas(64) float enter[kMovingBoxLanes];
-  std::size_t count = 0;
-  for (std::size_t first = 0; first < boxes.count; first += hn::Lanes(d)) {
-    Slabs slabs(d, ray.t_begin, t_max);
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      slabs.cut(d, ray, axis, row_at(2 * axis, first), row_at(2 * axis + 1, first));
-    std::uint32_t lanes = slabs.entered(d);
-    if (boxes.count - first < hn::Lanes(d)) lanes &= (1u << (boxes.count - first)) - 1;
-    if (lanes == 0) continue;
-    hn::Store(slabs.near, d, enter);
-    for (; lanes != 0; lanes &= lanes - 1) {
-      const auto lane = static_cast<std::uint32_t>(__builtin_ctz(lanes));
-      std::size_t place = count++;
-      for (; place > 0 && entered[place - 1].enter > enter[lane]; --place)
-        entered[place] = entered[place - 1];
-      entered[place] = {static_cast<std::uint32_t>(first) + lane, enter[lane]};
-    }
+/// The vertices of posed blocks.
+class PosedVertices {
+ public:
+  explicit PosedVertices(const PosedScene& scene) : scene_(scene) {}
+
+  template <class D>
+  HWY_INLINE Points<D> points(D d, const RayBlock& block, std::size_t first) const {
+    const PosedRayBlock& posed = of(block);
+    return {hn::Load(d, posed.x + first), hn::Load(d, posed.y + first),
+            hn::Load(d, posed.z + first)};
   }
-  return count;
+  HWY_INLINE Vec3f position(const RayBlock& block, std::size_t place) const {
+    const PosedRayBlock& posed = of(block);
+    return {posed.x[place], posed.y[place], posed.z[place]};
+  }
+
+ private:
+  HWY_INLINE const PosedRayBlock& of(const RayBlock& block) const {
+    return scene_.posed[&block - scene_.blocks];
+  }
+  const PosedScene& scene_;
+};
+
+QueryHit TraceRay(const RayModel& model, const QueryRay& ray, const KeyInterval& at,
+                  std::uint32_t segment, RayAim aim) {
+  const ScaledRay scaled(ray);
+  if (!scaled.usable) return {};
+  RayHit hit = scaled.nothing_yet();
+  RayInModel(model, scaled, at, aim, hit).trace(segment);
+  return scaled.in_callers_lengths(hit);
 }
 
-void Intersect(const WorldRay& ray, const BoxRay& local, const RayTarget& target, RayAim aim,
-               RayHit& hit) {
-  RayTester tester(ray, target.vertices, hit);
-  if (target.nodes.empty()) {
-    for (const TriangleBlock& block : target.blocks) tester.test(block);
-    return;
+/// A bit for each of as many rays as a vector holds that may enter the model's bounds, its slack
+/// included: what is told for certain, of rays of ordinary lengths.
+HWY_INLINE std::uint32_t may_enter(const RayModel& model, const QueryRay* rays, std::size_t count) {
+  const FloatTag d;
+  alignas(64) float part[8][hn::MaxLanes(FloatTag())] = {};
+  static_assert(sizeof(QueryRay) == 8 * sizeof(float));
+  for (std::size_t i = 0; i < count; ++i) {
+    float numbers[8];
+    std::memcpy(numbers, &rays[i], sizeof numbers);
+    for (std::size_t k = 0; k < 8; ++k) part[k][i] = numbers[k];
   }
-  const RayInTree rays(local, aim, hit);
-  walk_bvh(target.nodes, rays, [&](std::uint32_t leaf) { tester.test(target.blocks[leaf]); });
+  const Points<FloatTag> o{hn::Load(d, part[0]), hn::Load(d, part[1]), hn::Load(d, part[2])},
+      v{hn::Load(d, part[3]), hn::Load(d, part[4]), hn::Load(d, part[5])};
+  const Points<FloatTag> away = broadcast(d, model.center) - o;
+  const auto reach = hn::Add(sum_of_sizes(away), hn::Set(d, model.diagonal));
+  const auto longest = hn::Max(hn::Abs(v.x), hn::Max(hn::Abs(v.y), hn::Abs(v.z)));
+  const auto shortest = hn::Mul(longest, hn::Set(d, 0x1p-40f));
+  auto near = hn::Min(hn::Zero(d), hn::Load(d, part[6])), far = hn::Load(d, part[7]);
+  const auto cut = [&](hn::Vec<FloatTag> origin, hn::Vec<FloatTag> direction, float lo, float hi) {
+    const float side = std::max(std::abs(lo), std::abs(hi));
+    const auto slack = hn::Mul(hn::Add(reach, hn::Add(hn::Abs(origin), hn::Set(d, side))),
+                               hn::Set(d, 0x1p-18f));
+    const auto inverse = hn::Div(
+        hn::Set(d, 1.0f), hn::CopySign(hn::Max(hn::Abs(direction), shortest), direction));
+    const auto a = hn::Mul(hn::Sub(hn::Sub(hn::Set(d, lo), slack), origin), inverse);
+    const auto b = hn::Mul(hn::Sub(hn::Add(hn::Set(d, hi), slack), origin), inverse);
+    near = hn::Max(near, hn::Min(a, b));
+    far = hn::Min(far, hn::Max(a, b));
+  };
+  cut(o.x, v.x, model.bounds.lo.x, model.bounds.hi.x);
+  cut(o.y, v.y, model.bounds.lo.y, model.bounds.hi.y);
+  cut(o.z, v.z, model.bounds.lo.z, model.bounds.hi.z);
+  const auto ordinary = hn::And(
+      hn::Lt(reach, hn::Set(d, kLargestReach)),
+      hn::And(hn::Gt(longest, hn::Set(d, 0x1p-40f)), hn::Lt(longest, hn::Set(d, 0x1p40f))));
+  const std::uint32_t missed = mask_bits(d, hn::And(ordinary, hn::Gt(near, far)));
+  return ~missed & ((1u << count) - 1);
+}
+
+void TraceRays(const RayModel& model, const QueryRay* rays, const KeyInterval* times,
+               const std::uint32_t* segments, RayAim aim, QueryHit* hits, std::size_t count) {
+  const std::size_t lanes = hn::Lanes(FloatTag());
+  for (std::size_t first = 0; first < count; first += lanes) {
+    const std::size_t some = std::min(lanes, count - first);
+    const std::uint32_t entering = may_enter(model, rays + first, some);
+    for (std::size_t i = 0; i < some; ++i)
+      hits[first + i] = (entering >> i & 1u) != 0 ? TraceRay(model, rays[first + i],
+                                                             times[first + i],
+                                                             segments[first + i], aim)
+                                                  : QueryHit{};
+  }
+}
+
+QueryHit TracePosed(const PosedScene& scene, const QueryRay& ray, RayAim aim) {
+  const ScaledRay scaled(ray);
+  if (!scaled.usable) return {};
+  RayHit hit = scaled.nothing_yet();
+  RayAndBlocks traced(scaled, scene.center, scene.diagonal, aim, hit);
+  const FourFloats lo = FourFloats::load(scene.bounds.lo), hi = FourFloats::load(scene.bounds.hi);
+  const FourFloats size = abs(traced.origin()) + max(abs(lo), abs(hi));
+  BoxRay world(traced.origin(), traced.direction(),
+               FourFloats::all(traced.slack()) + size * FourFloats::all(0x1p-19f),
+               std::min(0.0f, scaled.ray.t_min));
+  if (HWY_UNLIKELY(traced.is_vast())) world.enter_all();
+  if (world.enters(lo, hi, hit.t)) {
+    traced.prepare();
+    const PosedVertices vertices(scene);
+    RayInTree in_tree(world, scene.nodes.data(), scene.blocks, aim, hit);
+    walk_bvh(scene.nodes, in_tree,
+             [&](std::uint32_t block) { test_leaf(traced, scene.blocks + block, vertices); });
+  }
+  return scaled.in_callers_lengths(hit);
+}
+
+void PoseBlocks(std::span<const RayBlock> blocks, const VertexSource& source,
+                PosedRayBlock* posed, Aabb* boxes) {
+  const FloatTag d;
+  const auto infinity = hn::Set(d, std::numeric_limits<float>::infinity());
+  for (std::size_t b = 0; b < blocks.size(); ++b) {
+    Points<FloatTag> lo{infinity, infinity, infinity},
+        hi{hn::Neg(infinity), hn::Neg(infinity), hn::Neg(infinity)};
+    for (std::size_t first = 0; first < kBlockVertices; first += hn::Lanes(d)) {
+      const Points<FloatTag> p = pose(d, blocks[b].vertex + first, source);
+      store(d, p, posed[b].x + first, posed[b].y + first, posed[b].z + first);
+      const auto finite = hn::And(hn::Lt(hn::Abs(p.x), infinity),
+                                  hn::And(hn::Lt(hn::Abs(p.y), infinity),
+                                          hn::Lt(hn::Abs(p.z), infinity)));
+      const auto low = [&](auto v) { return hn::IfThenElse(finite, v, infinity); };
+      const auto high = [&](auto v) { return hn::IfThenElse(finite, v, hn::Neg(infinity)); };
+      lo = {hn::Min(lo.x, low(p.x)), hn::Min(lo.y, low(p.y)), hn::Min(lo.z, low(p.z))};
+      hi = {hn::Max(hi.x, high(p.x)), hn::Max(hi.y, high(p.y)), hn::Max(hi.z, high(p.z))};
+    }
+    const auto least = [&](auto v) { return hn::GetLane(hn::MinOfLanes(d, v)); };
+    const auto most = [&](auto v) { return hn::GetLane(hn::MaxOfLanes(d, v)); };
+    boxes[b] = {{least(lo.x), least(lo.y), least(lo.z)}, {most(hi.x), most(hi.y), most(hi.z)}};
+    if (boxes[b].empty()) boxes[b] = {{0, 0, 0}, {0, 0, 0}};
+  }
+}
+
+void TestBlocks(const WorldRay& ray, std::span<const TriangleBlock> blocks,
+                const VertexSource& vertices, RayHit& hit) {
+  RayTester tester(ray, hit);
+  const std::size_t lanes = hn::Lanes(DoubleTag());
+  for (const TriangleBlock& block : blocks)
+    for (std::size_t first = 0; first < block.count; first += lanes)
+      tester.test({block.corner[0] + first, block.corner[1] + first, block.corner[2] + first},
+                  block.triangle + first, std::min(lanes, block.count - first), vertices);
 }
 
 }  // namespace rays
-using rays::EnterBoxes, rays::Intersect;
+using rays::PoseBlocks, rays::TestBlocks, rays::TracePosed, rays::TraceRay, rays::TraceRays;
 }  // namespace HWY_NAMESPACE
 }  // namespace mdk
 HWY_AFTER_NAMESPACE();
@@ -203,44 +325,34 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace mdk {
 
-HWY_EXPORT(EnterBoxes);
-HWY_EXPORT(Intersect);
+HWY_EXPORT(PoseBlocks);
+HWY_EXPORT(TestBlocks);
+HWY_EXPORT(TracePosed);
+HWY_EXPORT(TraceRay);
+HWY_EXPORT(TraceRays);
 
-BoxRay make_box_ray(const WorldRay& world, const Affine3d& local_from_world, const Aabb& bounds,
-                    double world_slack) {
-  const Vec3d local_origin = local_from_world.point(world.origin);
-  const Vec3d local_direction = local_from_world.vector(world.direction);
-  const double longest = std::max(
-      {std::abs(local_direction.x), std::abs(local_direction.y), std::abs(local_direction.z)});
-  // A component so small moves the ray by less than the slack on its way to anything; kept from
-  // zero, its inverse is finite and no product is without a value.
-  const double shortest = std::max(longest * 0x1p-40, 1e-30);
-  BoxRay ray;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const double* row = local_from_world.m[k];
-    const double stretch = std::abs(row[0]) + std::abs(row[1]) + std::abs(row[2]);
-    const double size =
-        std::abs(local_origin[k]) + std::max(std::abs(static_cast<double>(bounds.lo[k])),
-                                             std::abs(static_cast<double>(bounds.hi[k])));
-    const double slack = stretch * world_slack + size * 0x1p-19;
-    ray.origin_for_low[k] = static_cast<float>(local_origin[k] + slack);
-    ray.origin_for_high[k] = static_cast<float>(local_origin[k] - slack);
-    const double component = local_direction[k];
-    ray.inverse[k] = static_cast<float>(
-        1 / (std::abs(component) < shortest ? std::copysign(shortest, component) : component));
-  }
-  ray.t_begin = std::min(0.0f, world.t_min);
-  return ray;
+QueryHit trace_ray(const RayModel& model, const QueryRay& ray, const KeyInterval& at,
+                   std::uint32_t segment, RayAim aim) {
+  return HWY_DYNAMIC_DISPATCH(TraceRay)(model, ray, at, segment, aim);
 }
 
-std::size_t enter_boxes(const BoxRay& ray, const MovingBoxes& boxes, float t_max,
-                        EnteredBox* entered) {
-  return HWY_DYNAMIC_DISPATCH(EnterBoxes)(ray, boxes, t_max, entered);
+void trace_rays(const RayModel& model, const QueryRay* rays, const KeyInterval* times,
+                const std::uint32_t* segments, RayAim aim, QueryHit* hits, std::size_t count) {
+  HWY_DYNAMIC_DISPATCH(TraceRays)(model, rays, times, segments, aim, hits, count);
 }
 
-void intersect(const WorldRay& ray, const BoxRay& local, const RayTarget& target, RayAim aim,
-               RayHit& hit) {
-  HWY_DYNAMIC_DISPATCH(Intersect)(ray, local, target, aim, hit);
+QueryHit trace_posed(const PosedScene& scene, const QueryRay& ray, RayAim aim) {
+  return HWY_DYNAMIC_DISPATCH(TracePosed)(scene, ray, aim);
+}
+
+void pose_blocks(std::span<const RayBlock> blocks, const VertexSource& source,
+                 PosedRayBlock* posed, Aabb* boxes) {
+  HWY_DYNAMIC_DISPATCH(PoseBlocks)(blocks, source, posed, boxes);
+}
+
+void test_blocks(const WorldRay& ray, std::span<const TriangleBlock> blocks,
+                 const VertexSource& vertices, RayHit& hit) {
+  HWY_DYNAMIC_DISPATCH(TestBlocks)(ray, blocks, vertices, hit);
 }
 
 }  // namespace mdk

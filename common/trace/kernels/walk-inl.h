@@ -4,6 +4,7 @@
 //
 //     rays.enter(node, order)   the children that may be hit, a bit each, and for each a number
 //                               that grows with where its box begins
+//     rays.expect(child)        may fetch what a child that is entered needs; need not be there
 //     rays.is_past(order)       nothing that begins there matters any more
 //     rays.misses(cell)         certainly; a Cell is a node of a kd-tree and its box
 //     rays.set_axis(cell, axis, lo, hi)
@@ -46,6 +47,7 @@ HWY_INLINE void walk_bvh(std::span<const WideBvhNode> nodes, Rays& rays, const L
     for (std::uint32_t entered = rays.enter(node, order); entered != 0; entered &= entered - 1) {
       const auto c = static_cast<std::size_t>(__builtin_ctz(entered));
       const WaitingChild child{order[c], node.child[c]};
+      if constexpr (requires { rays.expect(child.child); }) rays.expect(child.child);
       std::size_t at = size++;  // the nearest comes on top
       for (; at > bottom && stack[at - 1].order < child.order; --at) stack[at] = stack[at - 1];
       stack[at] = child;

@@ -2,7 +2,7 @@
 // a stream of sixteen coherent packets of sixteen rays, which Embree takes at once and culls
 // together: of all it offers, this measures fastest (docs/kernels.md, Embree). Its triangle test is
 // another one, so its hits agree with brute force's in depth, not in every bit. Everything of
-// Embree stays in this file.
+// Embree stays in this file and embree_rays.cpp.
 #include <embree3/rtcore.h>
 #include <tbb/enumerable_thread_specific.h>
 
@@ -10,10 +10,8 @@
 #include <atomic>
 #include <cmath>
 #include <limits>
-#include <string>
 
-#include "common/base/error.h"
-#include "common/base/isa.h"
+#include "common/trace/techniques/embree_device.h"
 #include "common/trace/techniques/structure_technique.h"
 #include "common/trace/techniques/technique_chooser.h"
 
@@ -22,24 +20,6 @@ namespace {
 
 /// How the hierarchy follows the pose.
 enum class EmbreeMode { kRefit, kLow, kMedium };
-
-/// Vectors as wide as our own kernels may use, and no wider; left alone, Embree keeps to narrow
-/// ones on machines whose clock wide ones slowed down once. Threads are those of oneTBB, which both
-/// share.
-std::string device_config() {
-  const std::string_view isa = isa_in_use();
-  if (isa == "sse4" || isa == "scalar") return "isa=sse4.2";
-  if (isa == "avx2") return "isa=avx2,frequency_level=simd256";
-  return "frequency_level=simd512";
-}
-
-void require_success(RTCDevice device) {
-  const RTCError error = rtcGetDeviceError(device);
-  if (error == RTC_ERROR_NONE) return;
-  if (error == RTC_ERROR_OUT_OF_MEMORY)
-    throw Error(ErrorCode::kOverLimit, "Embree is out of memory for this model");
-  throw Error(ErrorCode::kInternal, "Embree fails with its error " + std::to_string(error));
-}
 
 constexpr std::uint32_t kWidth = 16;                      // rays of a packet
 constexpr std::uint32_t kPackets = kTilePixels / kWidth;  // of a tile
@@ -222,8 +202,8 @@ class BeamPackets {
 class EmbreeTechnique final : public Technique {
  public:
   EmbreeTechnique(const ModelView& model, EmbreeMode mode)
-      : model_(model), mode_(mode), device_(rtcNewDevice(device_config().c_str())) {
-    require_success(device_);
+      : model_(model), mode_(mode), device_(rtcNewDevice(embree_device_config().c_str())) {
+    require_embree_success(device_);
     rtcSetDeviceMemoryMonitorFunction(device_, count_bytes, &bytes_);
     make_scene();
   }
@@ -245,7 +225,7 @@ class EmbreeTechnique final : public Technique {
     set_vertices(mesh.positions());
     rtcCommitGeometry(geometry_);
     rtcCommitScene(scene_);
-    require_success(device_);
+    require_embree_success(device_);
     built_ = true;
   }
   void set_view(const PinholeRays& rays) override {
@@ -279,7 +259,7 @@ class EmbreeTechnique final : public Technique {
         scene_, dynamic ? RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_DYNAMIC : RTC_SCENE_FLAG_ROBUST);
     rtcSetSceneBuildQuality(scene_, dynamic ? RTC_BUILD_QUALITY_LOW : RTC_BUILD_QUALITY_MEDIUM);
     rtcAttachGeometry(scene_, geometry_);
-    require_success(device_);
+    require_embree_success(device_);
   }
 
   /// Embree loads 16 bytes per vertex: positions are shared where something stands behind the
