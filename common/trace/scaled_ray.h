@@ -1,4 +1,4 @@
-// ScaledRay: a caller's ray as the kernels take it.
+// ScaledRay: a caller's ray, which must outlive it, as the kernels take it.
 #pragma once
 
 #include <algorithm>
@@ -22,9 +22,10 @@ inline double power_of_two(int exponent) {
 /// farther than the largest float, in the caller's lengths, is not hit.
 struct ScaledRay {
   WorldRay ray;
+  const QueryRay& query;
   bool usable = false;
 
-  explicit ScaledRay(const QueryRay& q) {
+  explicit ScaledRay(const QueryRay& q) : query(q) {
     const float longest =
         std::max({std::abs(q.direction.x), std::abs(q.direction.y), std::abs(q.direction.z)});
     usable = is_finite(q.origin) && is_finite(q.direction) && longest > 0 && q.t_max > q.t_min;
@@ -42,6 +43,8 @@ struct ScaledRay {
     hit.t = t_max_;
     return hit;
   }
+  /// What directions were multiplied by.
+  double direction_scale() const { return inverse_; }
   QueryHit in_callers_lengths(const RayHit& hit) const {
     if (hit.triangle == kNoHit) return {};
     return {static_cast<float>(hit.t * inverse_), hit.triangle, hit.bary1, hit.bary2};
