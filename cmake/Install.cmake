@@ -56,7 +56,7 @@ install(DIRECTORY common/include/mdk DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COM
   FILES_MATCHING PATTERN "*.h")
 install(FILES docs/library.md docs/ray-queries.md COMPONENT dev
   DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/libmdk-dev)
-install(DIRECTORY examples/ray_sweep COMPONENT dev
+install(DIRECTORY examples/ray_sweep examples/lidar COMPONENT dev
   DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/libmdk-dev/examples)
 foreach(set IN ITEMS mdk mdkTrace mdkBake)
   install(EXPORT ${set} NAMESPACE mdk:: FILE ${set}Targets.cmake DESTINATION ${MDK_CMAKE_DIR}

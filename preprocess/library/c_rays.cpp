@@ -126,6 +126,13 @@ class Rays {
   std::size_t count() const { return rays_.count; }
   int threads() const { return static_cast<int>(std::min(rays_.threads, 1u << 16)); }
   const Times& times() const { return times_; }
+  /// Those from `begin` to `end`.
+  void read(std::size_t begin, std::size_t end, QueryRay* rays, KeyInterval* times) const {
+    for (std::size_t i = begin; i < end; ++i) {
+      rays[i - begin] = at(i);
+      times[i - begin] = times_.at(i);
+    }
+  }
   QueryRay at(std::size_t i) const {
     QueryRay ray{Strided<float>{rays_.origins, rays_.origin_stride}.point(i),
                  Strided<float>{rays_.directions, rays_.direction_stride}.point(i)};
@@ -257,9 +264,15 @@ mdk_status mdk_cast(mdk_model* model, const mdk_rays* rays, const mdk_hits* hits
     const Rays list(model->model, rays);
     const Hits out(hits);
     const mdk::RayQuery& query = model->query();
-    for_each_item(list.count(), list.threads(), [&](std::size_t i) {
-      const KeyInterval time = list.times().at(i);
-      out.write(i, query, query.closest_hit(list.at(i), time), time, list.times().rate(i));
+    const mdk::ThreadLimit limit(list.threads());
+    mdk::parallel_chunks(list.count(), kPerChunk, [&](std::size_t begin, std::size_t end) {
+      QueryRay some[kPerChunk];
+      KeyInterval times[kPerChunk];
+      QueryHit found[kPerChunk];
+      list.read(begin, end, some, times);
+      query.closest_hits(some, times, found, end - begin);
+      for (std::size_t i = begin; i < end; ++i)
+        out.write(i, query, found[i - begin], times[i - begin], list.times().rate(i));
     });
   });
 }
@@ -270,8 +283,12 @@ mdk_status mdk_occluded(mdk_model* model, const mdk_rays* rays, uint8_t* occlude
     const Rays list(model->model, rays);
     if (list.count() > 0) require(occluded, "occluded");
     const mdk::RayQuery& query = model->query();
-    for_each_item(list.count(), list.threads(), [&](std::size_t i) {
-      occluded[i] = query.any_hit(list.at(i), list.times().at(i)) ? 1 : 0;
+    const mdk::ThreadLimit limit(list.threads());
+    mdk::parallel_chunks(list.count(), kPerChunk, [&](std::size_t begin, std::size_t end) {
+      QueryRay some[kPerChunk];
+      KeyInterval times[kPerChunk];
+      list.read(begin, end, some, times);
+      query.any_hits(some, times, occluded + begin, end - begin);
     });
   });
 }
