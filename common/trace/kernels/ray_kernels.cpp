@@ -82,9 +82,9 @@ class RayInModel {
     BoxRay world(ray_.origin(), ray_.direction(),
                  FourFloats::all(ray_.slack()) + size * FourFloats::all(0x1p-19f),
                  std::min(0.0f, ray_.ray().t_min));
+    ray_.prepare(world.inverse);
     if (HWY_UNLIKELY(ray_.is_vast())) world.enter_all();
     if (!world.enters(lo, hi, ray_.hit().t)) return;
-    ray_.prepare();
     walk_top(world);
   }
 
@@ -270,9 +270,9 @@ QueryHit TracePosed(const PosedScene& scene, const QueryRay& ray, RayAim aim) {
   BoxRay world(traced.origin(), traced.direction(),
                FourFloats::all(traced.slack()) + size * FourFloats::all(0x1p-19f),
                std::min(0.0f, scaled.ray.t_min));
+  traced.prepare(world.inverse);
   if (HWY_UNLIKELY(traced.is_vast())) world.enter_all();
   if (world.enters(lo, hi, hit.t)) {
-    traced.prepare();
     const PosedVertices vertices(scene);
     RayInTree in_tree(world, scene.nodes.data(), scene.blocks, aim, hit);
     walk_bvh(scene.nodes, in_tree,

@@ -18,7 +18,7 @@
 // moves a weight by 1.42 * 2^-18 g m; rounding the corners to 6 * 2^-24 g moves it by 1.5 * 2^-20 g m,
 // and the products round by 2^-21 g m: in all less than R m + R^2, R = 1.25 * 2^-17 g. So there is no
 // hit where one weight is past R m + R^2 and another below its negative; nor where all corners lie
-// beyond the hit so far, or before t_min, by more than R.
+// beyond the hit so far by more than R.
 #include <algorithm>
 #include <cmath>
 
@@ -264,14 +264,14 @@ class RayAndBlocks {
   /// Too far away, or too large, for boxes in float.
   bool is_vast() const { return !(reach_ < 0x1p59f); }
 
-  /// Before the first test().
-  void prepare() {
+  /// Before the first test(). `inverse`: of the direction, in float.
+  HWY_INLINE void prepare(const float (&inverse_of)[4]) {
     const Vec3f& d = query_.direction;
     const std::size_t along = std::abs(d.x) >= std::abs(d.y) && std::abs(d.x) >= std::abs(d.z) ? 0
                               : std::abs(d.y) >= std::abs(d.z)                                 ? 1
                                                                                                : 2;
     const std::size_t x = along == 2 ? 0 : along + 1, y = along == 0 ? 2 : along - 1;
-    const auto inverse = static_cast<float>(1 / ray_.direction[along]);
+    const float inverse = inverse_of[along];
     for (auto& row : image_) row[0] = row[1] = row[2] = 0;
     image_[0][x] = 1;
     image_[0][along] = static_cast<float>(-ray_.direction[x]) * inverse;
@@ -322,9 +322,7 @@ class RayAndBlocks {
                                    hn::Lt(hn::Min(wa, hn::Min(wb, wc)), hn::Neg(error)));
       const auto az = z.pick(a), bz = z.pick(b), cz = z.pick(c);
       const auto beyond = hn::Gt(hn::Min(az, hn::Min(bz, cz)), hn::Set(d, hit_.t + tolerance_));
-      const auto before =
-          hn::Lt(hn::Max(az, hn::Max(bz, cz)), hn::Set(d, ray_.t_min - tolerance_));
-      const auto rejected = hn::Or(outside, hn::Or(beyond, before));
+      const auto rejected = hn::Or(outside, beyond);
       passed |= (mask_bits(d, rejected) ^ ((1u << hn::Lanes(d)) - 1)) << first;
     }
     passed &= (1u << block.count) - 1;
