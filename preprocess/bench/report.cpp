@@ -75,7 +75,7 @@ std::string mismatch_sentence(const BenchResults& results) {
 Section summary(const BenchResults& results) {
   std::vector<Contest> rows;
   for (const ModelBench& model : results.runs.front().models)
-    rows.push_back({results.runs.front(), model});
+    if (variant_of(model.name()).empty()) rows.push_back({results.runs.front(), model});
   return {
       "summary",
       "At a glance",
@@ -137,7 +137,8 @@ Section machines(const BenchResults& results) {
   std::vector<Contest> rows;
   for (const ModelBench& model : results.runs.front().models)
     for (const BenchRun& run : results.runs)
-      if (const ModelBench* same = run.find(model.name())) rows.push_back({run, *same});
+      if (const ModelBench* same = run.find(model.name()); same && variant_of(same->name()).empty())
+        rows.push_back({run, *same});
   Section section{
       "machines",
       "Instruction sets and threads",

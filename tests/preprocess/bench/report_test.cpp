@@ -99,6 +99,7 @@ TEST(Report, ComparesWhatWasBakedInOtherWays) {
   }
   const Report report = make_report(results);
   const auto table = [&](const char* id) { return block<Table>(section(report, id)); };
+  EXPECT_EQ(table("summary").rows.size(), 2u) << "the usual bakes: hand and hand-split1";
   ASSERT_EQ(table("gfw06-table-1").rows.size(), 5u) << "hand and its variants but the single pose";
   EXPECT_EQ(table("gfw06-table-1").rows[1][0], "hand-paper");
   EXPECT_EQ(table("gfw06-table-1").rows[1][7], "1.76") << "the paper's HAND";
