@@ -117,8 +117,10 @@ TEST_F(JobTest, TheDepfileNamesTheFolderWhereAMissingImageWouldAppear) {
 
 TEST_F(JobTest, ANewFrameOfANumberedSequenceIsAChange) {
   const auto frame = [&](int number, int height) {
-    folder_.write("walk/f_" + std::to_string(number) + ".obj",
-                  "v 0 0 0\nv 1 0 0\nv 0 1 " + std::to_string(height) + "\nf 1 2 3\n");
+    std::string text = "v 0 0 0\nv 1 0 0\nv 0 1 ";
+    text += std::to_string(height);
+    text += "\nf 1 2 3\n";
+    folder_.write("walk/f_" + std::to_string(number) + ".obj", text);
   };
   const auto walk = [&] {
     return job("r/walk.json", {"bake", at("walk/f_#.obj"), "-o", at("out/walk.mdk"), "-q"});
