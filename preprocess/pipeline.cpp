@@ -156,7 +156,8 @@ std::vector<std::string> make_notes(const DecomposeOptions& options, const Model
                     " segments are more than the animation has intervals between keys: it got " +
                     std::to_string(model.segments.size()));
   if (options.quantize && model.poses.kind != PoseKind::kQuantized)
-    notes.emplace_back("poses stay exact: bones and morph targets take less room than quantised keys");
+    notes.emplace_back(
+        "poses stay exact: bones and morph targets take less room than quantised keys");
   return notes;
 }
 

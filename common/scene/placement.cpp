@@ -295,8 +295,8 @@ void extend_by_sweep(Aabbd& box, double& slack, const PathStretch& stretch, doub
 }  // namespace
 
 Affine3f key_map(const PathKey& key) {
-  return to_float(composed(mdk::to_double(key.translation), rotation_of(key),
-                           mdk::to_double(key.scale)));
+  return to_float(
+      composed(mdk::to_double(key.translation), rotation_of(key), mdk::to_double(key.scale)));
 }
 
 Stage::Stage(const SceneView& scene, std::vector<Model> models)

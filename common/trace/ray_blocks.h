@@ -1,5 +1,5 @@
-// RaySegment: the fuzzy hierarchies of one time segment and the triangles of their leaves, as single
-// rays take them: valid at all times of the segment (Lo09 §4.3).
+// RaySegment: the fuzzy hierarchies of one time segment and the triangles of their leaves, as
+// single rays take them: valid at all times of the segment (Lo09 §4.3).
 #pragma once
 
 #include <cstddef>

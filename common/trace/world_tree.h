@@ -1,4 +1,5 @@
-// WorldTree: one hierarchy over all triangles of a model, in the world, that is refitted to a moment.
+// WorldTree: one hierarchy over all triangles of a model, in the world, that is refitted to a
+// moment.
 #pragma once
 
 #include <cstddef>

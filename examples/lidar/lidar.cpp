@@ -124,9 +124,8 @@ int main(int argc, char** argv) {
     if (triangle[i] == MDK_NONE) continue;
     const float *p = &position[3 * i], *v = &velocity[3 * i], *d = &directions[3 * i];
     points.push_back({p[0], p[1], p[2], static_cast<float>(times[i]),
-                      v[0] * d[0] + v[1] * d[1] + v[2] * d[2],
-                      static_cast<uint32_t>(i % kBeams), static_cast<uint32_t>(i / kBeams),
-                      instance[i]});
+                      v[0] * d[0] + v[1] * d[1] + v[2] * d[2], static_cast<uint32_t>(i % kBeams),
+                      static_cast<uint32_t>(i / kBeams), instance[i]});
   }
   mdk_model_release(model);
   if (!write(out_path, points)) {

@@ -285,11 +285,12 @@ void add_bench_command(Command& command) {
   const auto arguments = std::make_shared<BenchArguments>();
   command.add_texts(OptionKind::kSome, "FILE", "", ".mdk files made by 'mdprep bake'.",
                     arguments->inputs);
-  command.add_flag("--rays",
-                   "Time single rays instead, at times of their own and many at one time, on one\n"
-                   "thread and on all; beside Embree's, where it was built in. 20,000 rays of each\n"
-                   "kind, medians of 11 rounds. Takes --json (mdk-rays/1), --threads and --isa.",
-                   arguments->rays);
+  command.add_flag(
+      "--rays",
+      "Time single rays instead, at times of their own and many at one time, on one\n"
+      "thread and on all; beside Embree's, where it was built in. 20,000 rays of each\n"
+      "kind, medians of 11 rounds. Takes --json (mdk-rays/1), --threads and --isa.",
+      arguments->rays);
   add_measuring_options(command, arguments->config);
   add_view_options(command, arguments->view);
   add_result_options(command, *arguments);

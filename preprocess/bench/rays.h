@@ -19,8 +19,8 @@ struct RayBenchRow {
   double hits = 0;                                ///< share of the rays that hit
   std::size_t ours_bytes = 0, peer_bytes = 0;
   double ours_build_ms = 0, peer_build_ms = 0;
-  std::uint32_t judged = 0;      ///< rays compared with brute force
-  std::uint32_t mismatches = 0;  ///< of those, and between numbers of threads
+  std::uint32_t judged = 0;        ///< rays compared with brute force
+  std::uint32_t mismatches = 0;    ///< of those, and between numbers of threads
   std::uint32_t peer_differs = 0;  ///< rays for which the peer sees another thing or depth
 
   /// How many times the peer's time is ours.

@@ -62,9 +62,9 @@ void print_rays(std::ostream& out, const std::vector<RayBench>& models) {
   for (const RayBench& model : models)
     for (const RayBenchRow& row : model.rows)
       table.add_row({std::filesystem::path(model.file).stem().string(), row.row,
-                     std::to_string(row.threads), digits(100 * row.hits, 1),
-                     digits(row.ours_ns, 1), digits(row.peer_ns, 1), digits(row.plain_ns, 1),
-                     digits(row.ratio(), 2), mebibytes(row.ours_bytes), mebibytes(row.peer_bytes),
+                     std::to_string(row.threads), digits(100 * row.hits, 1), digits(row.ours_ns, 1),
+                     digits(row.peer_ns, 1), digits(row.plain_ns, 1), digits(row.ratio(), 2),
+                     mebibytes(row.ours_bytes), mebibytes(row.peer_bytes),
                      digits(row.ours_build_ms, 1), digits(row.peer_build_ms, 1),
                      std::to_string(row.mismatches)});
   table.print(out);

@@ -1,5 +1,5 @@
-// The hierarchy over clusters has each of them once, in the box it has at every key, and boxes above
-// that hold those below; key poses are what decoding gives.
+// The hierarchy over clusters has each of them once, in the box it has at every key, and boxes
+// above that hold those below; key poses are what decoding gives.
 #include "common/trace/query_keys.h"
 
 #include <gtest/gtest.h>

@@ -114,8 +114,9 @@ MDK_API mdk_status mdk_model_get_ray_bytes(mdk_model* model, size_t* bytes);
 /* ---- rays ------------------------------------------------------------------------------------ */
 
 /* Rays: origin + t direction, for t in (t_min, t_max]. Each list has a stride in bytes from one
- * item to the next; stride 0 gives every ray the first item. A ray without a direction hits nothing;
- * an origin, direction or time that is not finite, or a t_min or t_max that is NaN, is an error. */
+ * item to the next; stride 0 gives every ray the first item. A ray without a direction hits
+ * nothing; an origin, direction or time that is not finite, or a t_min or t_max that is NaN, is an
+ * error. */
 typedef struct mdk_rays {
   size_t struct_size;
   size_t count;            /* fewer than 2^32 */

@@ -19,8 +19,8 @@ namespace mdk {
 namespace HWY_NAMESPACE {
 namespace rays {
 
-/// A component so small moves the ray by less than any slack on its way to anything; kept from zero,
-/// its inverse is finite.
+/// A component so small moves the ray by less than any slack on its way to anything; kept from
+/// zero, its inverse is finite.
 constexpr float kShortest = 1e-20f;
 /// Past this, products might overflow.
 constexpr float kLargestReach = 0x1p59f, kLeastStretch = 1e-12f;
@@ -110,11 +110,9 @@ class RayInTree {
     const Tag d;
     std::uint32_t entered = 0;
     for (std::size_t first = 0; first < kBvhWidth; first += hn::Lanes(d))
-      entered |= ray_.enter(d, hit_.t, order + first,
-                            [&](std::uint32_t row) {
-                              return hn::Load(d, node.bounds[row] + first);
-                            })
-                 << first;
+      entered |= ray_.enter(d, hit_.t, order + first, [&](std::uint32_t row) {
+        return hn::Load(d, node.bounds[row] + first);
+      }) << first;
     return entered & ((1u << node.count) - 1);
   }
   HWY_INLINE void expect(WideBvhChild child) const {
@@ -137,7 +135,7 @@ class RayInTree {
 /// The ray by the inverse of a map that is interpolated between two keys, without its origins.
 struct MappedRay {
   FourFloats origin, direction;
-  FourFloats stretch;  ///< what the inverse makes of a box of half side 1, along each axis
+  FourFloats stretch;       ///< what the inverse makes of a box of half side 1, along each axis
   bool is_extreme = false;  ///< maps to numbers that boxes in float are not proven for
 };
 

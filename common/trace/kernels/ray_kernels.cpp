@@ -7,8 +7,8 @@
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "common/trace/kernels/ray_kernels.cpp"
-#include <hwy/foreach_target.h>
 #include <hwy/cache_control.h>
+#include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 // after highway.h
 #include "common/trace/kernels/ray_boxes-inl.h"
@@ -73,7 +73,7 @@ class RayInModel {
     trees_ = model_.trees + std::size_t{segment} * model_.clusters;
     const FourFloats s = FourFloats::all(at_.s);
     const KeyBox &from = model_.key_boxes[at_.key0], &to = model_.key_boxes[at_.key1];
-    const auto side = [&](const float (&a)[4], const float (&b)[4]) {
+    const auto side = [&](const float(&a)[4], const float(&b)[4]) {
       return FourFloats::load(a) + (FourFloats::load(b) - FourFloats::load(a)) * s;
     };
     const FourFloats lo = side(from.lo, to.lo), hi = side(from.hi, to.hi);
@@ -103,13 +103,11 @@ class RayInModel {
       alignas(64) float order[kTopWidth];
       std::uint32_t entered = 0;
       for (std::size_t first = 0; first < kTopWidth; first += hn::Lanes(d))
-        entered |= lanes.enter(d, ray_.hit().t, order + first,
-                             [&](std::uint32_t row) {
-                               const auto a = hn::Load(d, from[node].bounds[row] + first);
-                               const auto b = hn::Load(d, to[node].bounds[row] + first);
-                               return hn::Add(a, hn::Mul(hn::Sub(b, a), s));
-                             })
-                   << first;
+        entered |= lanes.enter(d, ray_.hit().t, order + first, [&](std::uint32_t row) {
+          const auto a = hn::Load(d, from[node].bounds[row] + first);
+          const auto b = hn::Load(d, to[node].bounds[row] + first);
+          return hn::Add(a, hn::Mul(hn::Sub(b, a), s));
+        }) << first;
       const TopLinks& links = model_.top_links[node];
       entered &= (1u << links.count) - 1;
       const std::size_t bottom = size;
@@ -140,14 +138,13 @@ class RayInModel {
     const MappedRay mapped = map_into(c);
     const FourFloats size = FourFloats::load(tree.size);
     BoxRay local(mapped.origin, mapped.direction,
-                       mapped.stretch * FourFloats::all(ray_.slack()) +
-                           (abs(mapped.origin) + size) * FourFloats::all(0x1p-19f),
-                       std::min(0.0f, ray_.ray().t_min));
+                 mapped.stretch * FourFloats::all(ray_.slack()) +
+                     (abs(mapped.origin) + size) * FourFloats::all(0x1p-19f),
+                 std::min(0.0f, ray_.ray().t_min));
     if (HWY_UNLIKELY(mapped.is_extreme || ray_.is_vast())) local.enter_all();
     RayInTree ray(local, tree.nodes.data(), tree.blocks, ray_.aim(), ray_.hit());
-    walk_bvh(tree.nodes, ray, [&](std::uint32_t block) {
-      test_leaf(ray_, tree.blocks + block, vertices_);
-    });
+    walk_bvh(tree.nodes, ray,
+             [&](std::uint32_t block) { test_leaf(ray_, tree.blocks + block, vertices_); });
   }
 
   /// The ray in a cluster's basis.
@@ -161,9 +158,8 @@ class RayInModel {
       ray.origin = ray.origin + four_of(model_.local_centers[c]);
       return ray;
     }
-    return map_irregular(
-        interpolate(model_.local_from_world[a], model_.local_from_world[b], at_.s),
-        ray_.ray().direction, ray_.ray().origin);
+    return map_irregular(interpolate(model_.local_from_world[a], model_.local_from_world[b], at_.s),
+                         ray_.ray().direction, ray_.ray().origin);
   }
 
   static constexpr std::size_t kMaxTopDepth = 9;  // 16^8 clusters
@@ -227,10 +223,10 @@ HWY_INLINE std::uint32_t may_enter(const RayModel& model, const QueryRay* rays, 
   auto near = hn::Min(hn::Zero(d), hn::Load(d, part[6])), far = hn::Load(d, part[7]);
   const auto cut = [&](hn::Vec<FloatTag> origin, hn::Vec<FloatTag> direction, float lo, float hi) {
     const float side = std::max(std::abs(lo), std::abs(hi));
-    const auto slack = hn::Mul(hn::Add(reach, hn::Add(hn::Abs(origin), hn::Set(d, side))),
-                               hn::Set(d, 0x1p-18f));
-    const auto inverse = hn::Div(
-        hn::Set(d, 1.0f), hn::CopySign(hn::Max(hn::Abs(direction), shortest), direction));
+    const auto slack =
+        hn::Mul(hn::Add(reach, hn::Add(hn::Abs(origin), hn::Set(d, side))), hn::Set(d, 0x1p-18f));
+    const auto inverse =
+        hn::Div(hn::Set(d, 1.0f), hn::CopySign(hn::Max(hn::Abs(direction), shortest), direction));
     const auto a = hn::Mul(hn::Sub(hn::Sub(hn::Set(d, lo), slack), origin), inverse);
     const auto b = hn::Mul(hn::Sub(hn::Add(hn::Set(d, hi), slack), origin), inverse);
     near = hn::Max(near, hn::Min(a, b));
@@ -239,9 +235,9 @@ HWY_INLINE std::uint32_t may_enter(const RayModel& model, const QueryRay* rays, 
   cut(o.x, v.x, model.bounds.lo.x, model.bounds.hi.x);
   cut(o.y, v.y, model.bounds.lo.y, model.bounds.hi.y);
   cut(o.z, v.z, model.bounds.lo.z, model.bounds.hi.z);
-  const auto ordinary = hn::And(
-      hn::Lt(reach, hn::Set(d, kLargestReach)),
-      hn::And(hn::Gt(longest, hn::Set(d, 0x1p-40f)), hn::Lt(longest, hn::Set(d, 0x1p40f))));
+  const auto ordinary =
+      hn::And(hn::Lt(reach, hn::Set(d, kLargestReach)),
+              hn::And(hn::Gt(longest, hn::Set(d, 0x1p-40f)), hn::Lt(longest, hn::Set(d, 0x1p40f))));
   const std::uint32_t missed = mask_bits(d, hn::And(ordinary, hn::Gt(near, far)));
   return ~missed & ((1u << count) - 1);
 }
@@ -253,10 +249,10 @@ void TraceRays(const RayModel& model, const QueryRay* rays, const KeyInterval* t
     const std::size_t some = std::min(lanes, count - first);
     const std::uint32_t entering = may_enter(model, rays + first, some);
     for (std::size_t i = 0; i < some; ++i)
-      hits[first + i] = (entering >> i & 1u) != 0 ? TraceRay(model, rays[first + i],
-                                                             times[first + i],
-                                                             segments[first + i], aim)
-                                                  : QueryHit{};
+      hits[first + i] =
+          (entering >> i & 1u) != 0
+              ? TraceRay(model, rays[first + i], times[first + i], segments[first + i], aim)
+              : QueryHit{};
   }
 }
 
@@ -281,8 +277,8 @@ QueryHit TracePosed(const PosedScene& scene, const QueryRay& ray, RayAim aim) {
   return scaled.in_callers_lengths(hit);
 }
 
-void PoseBlocks(std::span<const RayBlock> blocks, const VertexSource& source,
-                PosedRayBlock* posed, Aabb* boxes) {
+void PoseBlocks(std::span<const RayBlock> blocks, const VertexSource& source, PosedRayBlock* posed,
+                Aabb* boxes) {
   const FloatTag d;
   const auto infinity = hn::Set(d, std::numeric_limits<float>::infinity());
   for (std::size_t b = 0; b < blocks.size(); ++b) {
@@ -291,9 +287,9 @@ void PoseBlocks(std::span<const RayBlock> blocks, const VertexSource& source,
     for (std::size_t first = 0; first < kBlockVertices; first += hn::Lanes(d)) {
       const Points<FloatTag> p = pose(d, blocks[b].vertex + first, source);
       store(d, p, posed[b].x + first, posed[b].y + first, posed[b].z + first);
-      const auto finite = hn::And(hn::Lt(hn::Abs(p.x), infinity),
-                                  hn::And(hn::Lt(hn::Abs(p.y), infinity),
-                                          hn::Lt(hn::Abs(p.z), infinity)));
+      const auto finite =
+          hn::And(hn::Lt(hn::Abs(p.x), infinity),
+                  hn::And(hn::Lt(hn::Abs(p.y), infinity), hn::Lt(hn::Abs(p.z), infinity)));
       const auto low = [&](auto v) { return hn::IfThenElse(finite, v, infinity); };
       const auto high = [&](auto v) { return hn::IfThenElse(finite, v, hn::Neg(infinity)); };
       lo = {hn::Min(lo.x, low(p.x)), hn::Min(lo.y, low(p.y)), hn::Min(lo.z, low(p.z))};
@@ -345,8 +341,8 @@ QueryHit trace_posed(const PosedScene& scene, const QueryRay& ray, RayAim aim) {
   return HWY_DYNAMIC_DISPATCH(TracePosed)(scene, ray, aim);
 }
 
-void pose_blocks(std::span<const RayBlock> blocks, const VertexSource& source,
-                 PosedRayBlock* posed, Aabb* boxes) {
+void pose_blocks(std::span<const RayBlock> blocks, const VertexSource& source, PosedRayBlock* posed,
+                 Aabb* boxes) {
   HWY_DYNAMIC_DISPATCH(PoseBlocks)(blocks, source, posed, boxes);
 }
 

@@ -121,8 +121,8 @@ struct alignas(64) PosedRayBlock {
 };
 /// `posed` and `boxes` have one for each block; behind the source's last vertices, 4 bytes may be
 /// read. A box holds the vertices that are finite; a triangle with another cannot be hit.
-void pose_blocks(std::span<const RayBlock> blocks, const VertexSource& source,
-                 PosedRayBlock* posed, Aabb* boxes);
+void pose_blocks(std::span<const RayBlock> blocks, const VertexSource& source, PosedRayBlock* posed,
+                 Aabb* boxes);
 
 /// A model at one time, with one hierarchy in the world, whose leaves are numbers of blocks.
 struct PosedScene {

@@ -1,6 +1,7 @@
-// Triangles against single rays: the test in double that decides, and the one in float before it. With corners a, b, c seen from the ray's origin, the
-// weight of c at the direction d is ((b - a) x (b + a)) . d, exactly negated when a and b change
-// places: two triangles that share an edge agree on which side the ray passes.
+// Triangles against single rays: the test in double that decides, and the one in float before it.
+// With corners a, b, c seen from the ray's origin, the weight of c at the direction d is ((b - a) x
+// (b + a)) . d, exactly negated when a and b change places: two triangles that share an edge agree
+// on which side the ray passes.
 //
 //     hit where the three weights have one sign, each give or take its rounding: also a ray that
 //     passes a vertex exactly, where all signs are rounding, hits one of the triangles around it
@@ -12,13 +13,13 @@
 // rounding, it keeps hits where any box around the triangle shows them.
 //
 // In float, triangles are rejected before that. With the ray along an axis of the image (x, y), the
-// origin at (0, 0), an edge's weight is a_x b_y - a_y b_x. Let g be no less than the distance of any
-// point of the model from the origin, m the largest |x|, |y| of the corners. A hit has a point of the
-// triangle within 2^-20 g of the ray, so within sqrt(2) 2^-20 g of (0, 0) along x and along y, which
-// moves a weight by 1.42 * 2^-18 g m; rounding the corners to 6 * 2^-24 g moves it by 1.5 * 2^-20 g m,
-// and the products round by 2^-21 g m: in all less than R m + R^2, R = 1.25 * 2^-17 g. So there is no
-// hit where one weight is past R m + R^2 and another below its negative; nor where all corners lie
-// beyond the hit so far by more than R.
+// origin at (0, 0), an edge's weight is a_x b_y - a_y b_x. Let g be no less than the distance of
+// any point of the model from the origin, m the largest |x|, |y| of the corners. A hit has a point
+// of the triangle within 2^-20 g of the ray, so within sqrt(2) 2^-20 g of (0, 0) along x and along
+// y, which moves a weight by 1.42 * 2^-18 g m; rounding the corners to 6 * 2^-24 g moves it by 1.5
+// * 2^-20 g m, and the products round by 2^-21 g m: in all less than R m + R^2, R = 1.25 * 2^-17 g.
+// So there is no hit where one weight is past R m + R^2 and another below its negative; nor where
+// all corners lie beyond the hit so far by more than R.
 #include <algorithm>
 #include <cmath>
 
@@ -69,8 +70,8 @@ class RayTester {
         rounding_(kRounding * std::max({std::abs(ray.direction.x), std::abs(ray.direction.y),
                                         std::abs(ray.direction.z)})) {}
 
-  /// `count` triangles, not more than a vector holds; corner k of triangle i is vertex corner[k][i].
-  /// Places up to the lanes of a vector must be vertices, too.
+  /// `count` triangles, not more than a vector holds; corner k of triangle i is vertex
+  /// corner[k][i]. Places up to the lanes of a vector must be vertices, too.
   void test(const std::uint32_t* const (&corner)[3], const std::uint32_t* triangle,
             std::size_t count, const VertexSource& vertices) {
     const auto points = [&](const std::uint32_t* index) {
@@ -288,7 +289,7 @@ class RayAndBlocks {
   HWY_NOINLINE void test(const RayBlock& block, const Vertices& vertices) {
     const FloatTag d;
     Sixteen x, y, z, size;
-    const auto row_of = [&](const float (&row)[3], const Points<FloatTag>& p) {
+    const auto row_of = [&](const float(&row)[3], const Points<FloatTag>& p) {
       return hn::MulAdd(hn::Set(d, row[0]), p.x,
                         hn::MulAdd(hn::Set(d, row[1]), p.y, hn::Mul(hn::Set(d, row[2]), p.z)));
     };

@@ -69,9 +69,18 @@ class EmbreeRays final : public PeerRays {
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
     RTCRayHit query;
-    query.ray = {ray.origin.x,    ray.origin.y,    ray.origin.z,    ray.t_min,
-                 ray.direction.x, ray.direction.y, ray.direction.z, time.time,
-                 ray.t_max,       ~0u,             0,               0};
+    query.ray = {ray.origin.x,
+                 ray.origin.y,
+                 ray.origin.z,
+                 ray.t_min,
+                 ray.direction.x,
+                 ray.direction.y,
+                 ray.direction.z,
+                 time.time,
+                 ray.t_max,
+                 ~0u,
+                 0,
+                 0};
     if (aim == RayAim::kAny) {
       rtcOccluded1(scenes_[time.scene], &context, &query.ray);
       return query.ray.tfar < 0 ? QueryHit{0, 0, 0, 0} : QueryHit{};
