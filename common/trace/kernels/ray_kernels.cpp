@@ -86,7 +86,39 @@ class RayTester {
     test_lanes(points(corner[0]), points(corner[1]), points(corner[2]), triangle, count);
   }
 
+  /// One triangle, by the same operations one after another.
+  void test_one(const Vec3f& corner_a, const Vec3f& corner_b, const Vec3f& corner_c,
+                std::uint32_t triangle) {
+    const Vec3d a = to_double(corner_a) - ray_.origin, b = to_double(corner_b) - ray_.origin,
+                c = to_double(corner_c) - ray_.origin;
+    const Vec3d& d = ray_.direction;
+    const auto size = [](const Vec3d& v) { return std::abs(v.x) + std::abs(v.y) + std::abs(v.z); };
+    const auto weight = [&](const Vec3d& p, const Vec3d& q, double& error) {
+      const Vec3d u = q - p, v = q + p;
+      error = size(u) * size(v) * rounding_;
+      return dot(cross(u, v), d);
+    };
+    double ea, eb, ec;
+    const double wa = weight(b, c, ea), wb = weight(c, a, eb), wc = weight(a, b, ec);
+    const double side = std::copysign(1.0, wa + wb + wc);
+    if (!(wa * side >= -ea && wb * side >= -eb && wc * side >= -ec)) return;
+    const auto share_of = [&](double w) { return w * side > 0 ? w * side : 0.0; };
+    const double sa = share_of(wa), sb = share_of(wb), sc = share_of(wc);
+    const double total = sa + sb + sc, share = 1.0 / total;
+    const Vec3d p = (a * sa + b * sb + c * sc) * share;
+    const double t = dot(p, d) / direction_square_;
+    const Vec3d off = p - d * t;
+    if (!(dot(off, off) <= dot(p, p) * 0x1p-40 && total > 0)) return;
+    keep({static_cast<float>(t), triangle, static_cast<float>(sb * share),
+          static_cast<float>(sc * share)});
+  }
+
  private:
+  void keep(const RayHit& hit) {
+    const bool is_closer = hit.t < hit_.t || (hit.t == hit_.t && hit.triangle < hit_.triangle);
+    if (hit.t > ray_.t_min && is_closer) hit_ = hit;
+  }
+
   HWY_INLINE void test_lanes(const DoublePoints& a, const DoublePoints& b, const DoublePoints& c,
                              const std::uint32_t* triangles, std::size_t count) {
     const DoubleTag d;
@@ -122,11 +154,8 @@ class RayTester {
     hn::Store(hn::Mul(sc, share), d, bary2);
     for (; lanes != 0; lanes &= lanes - 1) {
       const auto i = static_cast<std::size_t>(__builtin_ctz(lanes));
-      const auto at = static_cast<float>(depth[i]);
-      const std::uint32_t triangle = triangles[i];
-      const bool is_closer = at < hit_.t || (at == hit_.t && triangle < hit_.triangle);
-      if (!(at > ray_.t_min) || !is_closer) continue;
-      hit_ = {at, triangle, static_cast<float>(bary1[i]), static_cast<float>(bary2[i])};
+      keep({static_cast<float>(depth[i]), triangles[i], static_cast<float>(bary1[i]),
+            static_cast<float>(bary2[i])});
     }
   }
 
@@ -273,6 +302,76 @@ HWY_INLINE Points<D> pose(D d, const std::uint32_t* vertex, const VertexSource& 
 #endif
 }
 
+/// A ray by the inverse of `from` + s (`to` - `from`). `stretch`: no less than what the inverse
+/// makes of a box of half side 1, along each axis, but for rounding.
+struct MappedRay {
+  alignas(16) float origin[4], direction[4], stretch[4];
+};
+
+/// With rows X, Y, Z of the map's linear part, its inverse has the columns Y x Z, Z x X and X x Y,
+/// over X . (Y x Z). A column's components stand in the order z, x, y.
+HWY_INLINE MappedRay map_ray(const KeyMap& from, const KeyMap& to, double s,
+                             const Vec3d& direction, const Vec3d& origin) {
+  MappedRay ray;
+#if HWY_TARGET == HWY_AVX2 || HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX3_DL
+  const hn::FixedTag<double, 4> d;
+  const hn::FixedTag<float, 4> df;
+  const hn::FixedTag<std::int64_t, 4> di;
+  alignas(32) static constexpr std::int64_t kTurn[4] = {1, 2, 0, 3};
+  const auto turn_indices = hn::IndicesFromVec(d, hn::Load(di, kTurn));
+  const auto last_index = hn::IndicesFromVec(d, hn::Set(di, 3));
+  const auto turned = [&](auto v) { return hn::TableLookupLanes(v, turn_indices); };
+  const auto row = [&](int j) {
+    const auto a = hn::PromoteTo(d, hn::LoadU(df, from.m[j])),
+               b = hn::PromoteTo(d, hn::LoadU(df, to.m[j]));
+    return hn::Add(a, hn::Mul(hn::Sub(b, a), hn::Set(d, s)));
+  };
+  const auto x = row(0), y = row(1), z = row(2);
+  const auto tx = turned(x), ty = turned(y), tz = turned(z);
+  const auto cx = hn::Sub(hn::Mul(y, tz), hn::Mul(ty, z)),
+             cy = hn::Sub(hn::Mul(z, tx), hn::Mul(tz, x)),
+             cz = hn::Sub(hn::Mul(x, ty), hn::Mul(tx, y));
+  // The last lane of a column is 0: there stand the same two numbers.
+  const auto scale = hn::Div(hn::Set(d, 1.0), hn::SumOfLanes(d, hn::Mul(cx, turned(tx))));
+  const auto part = [&](auto column, double component, auto r) {
+    return hn::Mul(column, hn::Sub(hn::Set(d, component), hn::TableLookupLanes(r, last_index)));
+  };
+  const auto o = hn::Mul(
+      hn::Add(hn::Add(part(cx, origin.x, x), part(cy, origin.y, y)), part(cz, origin.z, z)), scale);
+  const auto v = hn::Mul(hn::Add(hn::Add(hn::Mul(cx, hn::Set(d, direction.x)),
+                                         hn::Mul(cy, hn::Set(d, direction.y))),
+                                 hn::Mul(cz, hn::Set(d, direction.z))),
+                         scale);
+  const auto stretch =
+      hn::Mul(hn::Add(hn::Add(hn::Abs(cx), hn::Abs(cy)), hn::Abs(cz)), hn::Abs(scale));
+  hn::Store(hn::DemoteTo(df, turned(o)), df, ray.origin);
+  hn::Store(hn::DemoteTo(df, turned(v)), df, ray.direction);
+  hn::Store(hn::DemoteTo(df, turned(stretch)), df, ray.stretch);
+#else
+  double m[3][4], column[3][3];
+  for (int j = 0; j < 3; ++j)
+    for (int i = 0; i < 4; ++i)
+      m[j][i] = from.m[j][i] + (static_cast<double>(to.m[j][i]) - from.m[j][i]) * s;
+  for (int j = 0; j < 3; ++j) {
+    const double *u = m[(j + 1) % 3], *v = m[(j + 2) % 3];
+    for (int k = 0; k < 3; ++k)
+      column[j][k] = u[(k + 1) % 3] * v[(k + 2) % 3] - u[(k + 2) % 3] * v[(k + 1) % 3];
+  }
+  const double scale =
+      1 / (m[0][0] * column[0][0] + m[0][1] * column[0][1] + m[0][2] * column[0][2]);
+  const double o[3] = {origin.x - m[0][3], origin.y - m[1][3], origin.z - m[2][3]};
+  for (int k = 0; k < 3; ++k) {
+    const double cx = column[0][k], cy = column[1][k], cz = column[2][k];
+    ray.origin[k] = static_cast<float>((cx * o[0] + cy * o[1] + cz * o[2]) * scale);
+    ray.direction[k] =
+        static_cast<float>((cx * direction.x + cy * direction.y + cz * direction.z) * scale);
+    ray.stretch[k] =
+        static_cast<float>((std::abs(cx) + std::abs(cy) + std::abs(cz)) * std::abs(scale));
+  }
+#endif
+  return ray;
+}
+
 /// One ray on its way through a model.
 class RayInModel {
  public:
@@ -408,39 +507,14 @@ class RayInModel {
           static_cast<double>(slack_));
       return;
     }
-    // With rows X, Y, Z of world_from_local, its inverse has the columns Y x Z, Z x X, X x Y, over
-    // the determinant X . (Y x Z).
-    const KeyMap &from = model_.key_maps[a], &to = model_.key_maps[b];
-    double m[3][4];
-    for (int j = 0; j < 3; ++j)
-      for (int i = 0; i < 4; ++i)
-        m[j][i] = from.m[j][i] + (static_cast<double>(to.m[j][i]) - from.m[j][i]) * at_.s;
-    double column[3][3];
-    for (int j = 0; j < 3; ++j) {
-      const double *u = m[(j + 1) % 3], *v = m[(j + 2) % 3];
-      for (int k = 0; k < 3; ++k)
-        column[j][k] = u[(k + 1) % 3] * v[(k + 2) % 3] - u[(k + 2) % 3] * v[(k + 1) % 3];
-    }
-    const double scale =
-        1 / (m[0][0] * column[0][0] + m[0][1] * column[0][1] + m[0][2] * column[0][2]);
-    double origin[3] = {}, direction[3] = {}, stretch[3] = {};
-    for (std::size_t j = 0; j < 3; ++j) {
-      const double o = ray_.origin[j] - static_cast<double>(model_.center[j]) - m[j][3];
-      for (std::size_t k = 0; k < 3; ++k) {
-        origin[k] += column[j][k] * o;
-        direction[k] += column[j][k] * ray_.direction[j];
-        stretch[k] += std::abs(column[j][k]);
-      }
-    }
+    const MappedRay mapped = map_ray(model_.key_maps[a], model_.key_maps[b], at_.s, ray_.direction,
+                                     ray_.origin - to_double(model_.center));
     for (std::size_t k = 0; k < 3; ++k) {
-      const double o = origin[k] * scale + static_cast<double>(model_.local_centers[c][k]);
-      const auto d = static_cast<float>(direction[k] * scale);
-      const float size = static_cast<float>(std::abs(o)) +
-                         std::max(std::abs(bounds.lo[k]), std::abs(bounds.hi[k]));
-      const float slack = static_cast<float>(stretch[k] * std::abs(scale)) * slack_ +
-                          size * 0x1p-19f;
-      local.origin_for_low[k] = static_cast<float>(o) + slack;
-      local.origin_for_high[k] = static_cast<float>(o) - slack;
+      const float o = mapped.origin[k] + model_.local_centers[c][k], d = mapped.direction[k];
+      const float size = std::abs(o) + std::max(std::abs(bounds.lo[k]), std::abs(bounds.hi[k]));
+      const float slack = mapped.stretch[k] * slack_ + size * 0x1p-19f;
+      local.origin_for_low[k] = o + slack;
+      local.origin_for_high[k] = o - slack;
       local.inverse[k] = 1 / (std::abs(d) < kShortest ? std::copysign(kShortest, d) : d);
     }
     local.t_begin = world_.t_begin;
@@ -491,17 +565,12 @@ class RayInModel {
       passed |= (mask_bits(d, rejected) ^ ((1u << hn::Lanes(d)) - 1)) << first;
     }
     passed &= (1u << block.count) - 1;
-    while (passed != 0) {
-      alignas(64) std::uint32_t corner[3][kBvhWidth], triangle[kBvhWidth];
-      std::size_t count = 0;
-      for (; passed != 0 && count < hn::Lanes(DoubleTag()); passed &= passed - 1, ++count) {
-        const auto lane = static_cast<std::size_t>(__builtin_ctz(passed));
-        for (std::size_t k = 0; k < 3; ++k) corner[k][count] = block.vertex[block.corner[k][lane]];
-        triangle[count] = block.triangle[lane];
-      }
-      for (std::size_t i = count; i < hn::Lanes(DoubleTag()); ++i)
-        for (auto& row : corner) row[i] = row[0];
-      tester_.test({corner[0], corner[1], corner[2]}, triangle, count, vertices_);
+    for (; passed != 0; passed &= passed - 1) {
+      const auto lane = static_cast<std::size_t>(__builtin_ctz(passed));
+      const auto corner = [&](std::size_t k) {
+        return vertices_.position(block.vertex[block.corner[k][lane]]);
+      };
+      tester_.test_one(corner(0), corner(1), corner(2), block.triangle[lane]);
     }
   }
 
