@@ -84,6 +84,13 @@ bool RayTracer::has_time(const KeyInterval& at) const {
   return at.key0 + 1 == at.key1 && at.s >= 0 && at.s < 1 && data_->key_times[at.key1].has_before;
 }
 
+const RayModel& RayTracer::rays() const { return data_->rays; }
+
+std::uint32_t RayTracer::segment(const KeyInterval& time) const {
+  const Data::KeyTimes& times = data_->key_times[time.key1];
+  return time.key0 == time.key1 ? times.segment_at : times.segment_before;
+}
+
 std::size_t RayTracer::bytes() const {
   std::size_t sum = data_->poses.bytes() + data_->top.bytes() + data_->maps.bytes() +
                     data_->trees.size() * sizeof(RayTree) +
@@ -95,10 +102,8 @@ std::size_t RayTracer::bytes() const {
 QueryHit RayTracer::trace(const QueryRay& ray, const KeyInterval& time, RayAim aim) const {
   const ScaledRay scaled(ray);
   if (!scaled.usable) return {};
-  const Data::KeyTimes& times = data_->key_times[time.key1];
   RayHit hit = scaled.nothing_yet();
-  trace_ray(data_->rays, scaled.ray, time,
-            time.key0 == time.key1 ? times.segment_at : times.segment_before, aim, hit);
+  trace_ray(data_->rays, scaled.ray, time, segment(time), aim, hit);
   return scaled.in_callers_lengths(hit);
 }
 

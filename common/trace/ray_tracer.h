@@ -29,6 +29,11 @@ class RayTracer {
   /// keys it needs are there.
   QueryHit trace(const QueryRay& ray, const KeyInterval& time, RayAim aim) const;
 
+  /// For kernels that go the same way: what rays go through, and the segment of a time, one of
+  /// has_time().
+  const RayModel& rays() const;
+  std::uint32_t segment(const KeyInterval& time) const;
+
   /// What it holds now.
   std::size_t bytes() const;
 

@@ -19,6 +19,10 @@ struct PixelFromWorld {
   Vec3f origin;
 };
 
+/// How far outside the corners' image bounds a hit may be, in pixels: more than rounding moves
+/// anything by in the largest picture. Frusta allow for more (docs/kernels.md).
+inline constexpr float kBoundsMargin = 0x1p-6f;
+
 PixelFromWorld make_pixel_from_world(const PinholeRays& rays);
 
 /// One tile of 16x16 pixels with its upper left pixel at (x, y), a multiple of 16.

@@ -1,0 +1,61 @@
+// CrowdModels: what the models of a scene hold for its pictures, made once and shared by all
+// instances, whatever their times: hierarchies, key poses and what is known of each key.
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <span>
+#include <vector>
+
+#include "common/motion/model.h"
+#include "common/trace/ray_tracer.h"
+
+namespace mdk {
+
+/// One model. Safe to use from many threads at once; the model must outlive it.
+class CrowdModel {
+ public:
+  /// Cost: O(segments * T log T); runs in parallel.
+  explicit CrowdModel(const ModelView& model);
+
+  const ModelView& model() const { return tracer_.model(); }
+  const RayTracer& tracer() const { return tracer_; }
+
+  /// No edge of a triangle is longer at this key. Cost: O(1), but O(T) the first time.
+  float longest_edge(std::uint32_t key) const { return facts(key).longest_edge; }
+  /// Smooth normals of all vertices at a key, in the model: unit, weighted by area, or zero where
+  /// the triangles around a vertex have no direction. Cost: O(1), but O(T) the first time.
+  std::span<const Vec3f> normals(std::uint32_t key) const;
+
+  /// An instance of so many pixels or fewer is traced pixel by pixel: it would enter more blocks
+  /// than that as a frustum.
+  float line_pixels() const { return line_pixels_; }
+
+  /// What serves every frame, and what keys have been worked out for.
+  std::size_t structure_bytes() const;
+  std::size_t cache_bytes() const;
+
+ private:
+  struct KeyFacts {
+    std::atomic<bool> ready = false, has_normals = false;
+    std::once_flag once, normals_once;
+    float longest_edge = 0;
+    std::vector<Vec3f> normals;
+  };
+  const KeyFacts& facts(std::uint32_t key) const {
+    const KeyFacts& known = keys_[key];
+    return known.ready.load(std::memory_order_acquire) ? known : find(key);
+  }
+  const KeyFacts& find(std::uint32_t key) const;
+
+  RayTracer tracer_;
+  float line_pixels_ = 0;
+  std::size_t own_bytes_ = 0;  ///< of the tracer before any key is decoded
+  mutable std::atomic<std::size_t> cached_ = 0;
+  std::unique_ptr<KeyFacts[]> keys_;
+};
+
+}  // namespace mdk
