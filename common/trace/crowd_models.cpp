@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 
 #include "common/trace/query_keys.h"
 
@@ -11,10 +10,7 @@ namespace mdk {
 CrowdModel::CrowdModel(const ModelView& model)
     : tracer_(model),
       own_bytes_(tracer_.bytes()),
-      keys_(std::make_unique<KeyFacts[]>(model.key_count())) {
-  const char* e = std::getenv("MDK_LINE_SHARE");
-  line_pixels_ = (e ? std::strtof(e, nullptr) : 0.06f) * static_cast<float>(model.triangle_count());
-}
+      keys_(std::make_unique<KeyFacts[]>(model.key_count())) {}
 
 const CrowdModel::KeyFacts& CrowdModel::find(std::uint32_t key) const {
   KeyFacts& facts = keys_[key];

@@ -30,10 +30,6 @@ class CrowdModel {
   /// the triangles around a vertex have no direction. Cost: O(1), but O(T) the first time.
   std::span<const Vec3f> normals(std::uint32_t key) const;
 
-  /// An instance of so many pixels or fewer is traced pixel by pixel: it would enter more blocks
-  /// than that as a frustum.
-  float line_pixels() const { return line_pixels_; }
-
   /// What serves every frame, and what keys have been worked out for.
   std::size_t structure_bytes() const;
   std::size_t cache_bytes() const;
@@ -52,7 +48,6 @@ class CrowdModel {
   const KeyFacts& find(std::uint32_t key) const;
 
   RayTracer tracer_;
-  float line_pixels_ = 0;
   std::size_t own_bytes_ = 0;  ///< of the tracer before any key is decoded
   mutable std::atomic<std::size_t> cached_ = 0;
   std::unique_ptr<KeyFacts[]> keys_;

@@ -140,7 +140,8 @@ InstanceRays make_instance_rays(const CrowdFrame& frame, std::uint32_t instance)
 
   const float pixels =
       (r.screen.last_x - r.screen.first_x + 1) * (r.screen.last_y - r.screen.first_y + 1);
-  if (!(pixels <= crowd.line_pixels()) || !(pixels > 0)) return r;
+  if (!(pixels > 0 && pixels <= frame.line_share * static_cast<float>(model.triangle_count())))
+    return r;
 
   // Lines. A pixel is hit where it is inside all edges, give or take what rounding does to them,
   // and within the margin of the corners' bounds. Away from an edge by d pixels, an edge of l

@@ -23,6 +23,9 @@ struct CrowdFrame {
   PinholeRays rays;
   PixelFromWorld pixel_from_world;
   std::uint32_t width = 0, height = 0;
+  /// An instance of so many pixels a triangle, or fewer, is traced pixel by pixel: as a frustum it
+  /// would enter more blocks than that.
+  float line_share = 0;
 };
 
 /// The rays of a frame in the model of an instance that is shown. The agreed rounding: image points

@@ -93,13 +93,8 @@ struct SceneRenderer::State {
     std::uint64_t serial = 0;
   };
 
-  State(const Stage& s, SceneTechnique t, std::size_t cache)
-      : stage(s),
-        technique(t),
-        cache_bytes(cache),
-        models(make_models(s)),
-        shader(s, models),
-        workers([this] {
+  State(const Stage& s, const SceneOptions& o)
+      : stage(s), options(o), models(make_models(s)), shader(s, models), workers([this] {
           return Worker{InstancePool(models, pool_bytes()), {}, 0};
         }) {}
 
@@ -110,12 +105,11 @@ struct SceneRenderer::State {
     return models;
   }
   std::size_t pool_bytes() const {
-    return cache_bytes / static_cast<std::size_t>(std::max(1, thread_count()));
+    return options.cache_bytes / static_cast<std::size_t>(std::max(1, thread_count()));
   }
 
   const Stage& stage;
-  const SceneTechnique technique;
-  const std::size_t cache_bytes;
+  const SceneOptions options;
   std::vector<std::unique_ptr<CrowdModel>> models;
   SceneShader shader;
   std::unique_ptr<InstanceTree> tree;
@@ -144,7 +138,7 @@ struct SceneRenderer::State {
 
   void update(double time) {
     Stopwatch watch;
-    if (technique == SceneTechnique::kBruteForce) {
+    if (options.technique == SceneTechnique::kBruteForce) {
       pose_all();
     } else if (tree == nullptr) {
       tree = std::make_unique<InstanceTree>(stage, time);
@@ -206,7 +200,8 @@ struct SceneRenderer::State {
              .rays = sample_rays(request, sample),
              .pixel_from_world = {},
              .width = request.width,
-             .height = request.height};
+             .height = request.height,
+             .line_share = options.line_share};
     frame.pixel_from_world = make_pixel_from_world(frame.rays);
     ++serial;
     update(frame.time);
@@ -218,7 +213,7 @@ struct SceneRenderer::State {
     }
     hits.hits.resize(request.width, request.height);
     hits.instances.resize(hits.hits.tile_count());
-    const CrowdView seen = technique == SceneTechnique::kFuzzy ? view() : CrowdView{};
+    const CrowdView seen = options.technique == SceneTechnique::kFuzzy ? view() : CrowdView{};
     parallel_chunks(order.size(), kTilesPerChunk, [&](std::size_t begin, std::size_t end) {
       Worker& w = worker();
       for (std::size_t i = begin; i < end; ++i) {
@@ -226,7 +221,7 @@ struct SceneRenderer::State {
         const TileRays tile{&frame.rays, &frame.pixel_from_world, hits.hits.tile_left(t),
                             hits.hits.tile_top(t)};
         hits.hits.set_hit(
-            t, technique == SceneTechnique::kFuzzy
+            t, options.technique == SceneTechnique::kFuzzy
                    ? trace_crowd_tile(tile, seen, w.pool, hits.hits.tile(t), hits.instances[t],
                                       request.counting ? &w.counters : nullptr)
                    : trace_crowd_brute(tile, brute, hits.hits.tile(t), hits.instances[t]));
@@ -261,11 +256,8 @@ struct SceneRenderer::State {
   }
 };
 
-SceneRenderer::SceneRenderer(const Stage& stage, SceneTechnique technique,
-                             std::size_t cache_bytes) {
-  const Stopwatch watch;
-  state_ = std::make_unique<State>(stage, technique, cache_bytes);
-}
+SceneRenderer::SceneRenderer(const Stage& stage, const SceneOptions& options)
+    : state_(std::make_unique<State>(stage, options)) {}
 SceneRenderer::~SceneRenderer() = default;
 
 const SceneStats& SceneRenderer::trace(const SceneRequest& request) {

@@ -56,14 +56,17 @@ std::uint64_t count_mismatches(const SceneHits& a, const SceneHits& b);
 
 enum class SceneTechnique { kFuzzy, kBruteForce };
 
-/// How much memory pools may take, unless told otherwise.
-inline constexpr std::size_t kSceneCacheBytes = std::size_t{64} << 20;
+struct SceneOptions {
+  SceneTechnique technique = SceneTechnique::kFuzzy;
+  std::size_t cache_bytes = std::size_t{64} << 20;  ///< what pools may take
+  /// Instances of so many pixels a triangle, or fewer, go pixel by pixel. Changes no picture.
+  float line_share = 0.06f;
+};
 
 /// Not for use from several threads at once; uses many inside. The stage must outlive it.
 class SceneRenderer {
  public:
-  explicit SceneRenderer(const Stage& stage, SceneTechnique technique = SceneTechnique::kFuzzy,
-                         std::size_t cache_bytes = kSceneCacheBytes);
+  explicit SceneRenderer(const Stage& stage, const SceneOptions& options = {});
   ~SceneRenderer();
   SceneRenderer(const SceneRenderer&) = delete;
   SceneRenderer& operator=(const SceneRenderer&) = delete;
