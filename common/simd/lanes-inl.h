@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 
 #include "common/math/vec3.h"
 
@@ -30,7 +31,8 @@ HWY_INLINE std::uint32_t mask_bits(D d, hn::Mask<D> mask) {
   static_assert(hn::MaxLanes(D()) <= 16);
   alignas(8) std::uint8_t bits[8] = {};
   hn::StoreMaskBits(d, mask, bits);
-  const std::uint32_t all = bits[0] | static_cast<std::uint32_t>(bits[1]) << 8;
+  std::uint16_t all;
+  std::memcpy(&all, bits, sizeof all);  // of little-endian machines, as Highway's targets are
   return all & ((1u << hn::Lanes(d)) - 1);
 }
 

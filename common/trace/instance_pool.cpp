@@ -75,6 +75,12 @@ InstanceRays make_instance_rays(const CrowdFrame& frame, std::uint32_t instance)
   r.segment = crowd.tracer().segment(r.at);
   r.vertices = {nullptr, nullptr, r.at.s};
   const Aabb box = model_box(model, r.at);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    r.lo[axis] = box.lo[axis];
+    r.hi[axis] = box.hi[axis];
+    r.size[axis] = std::max(std::abs(box.lo[axis]), std::abs(box.hi[axis]));
+  }
+  r.lo[3] = r.hi[3] = r.size[3] = 0;
   choose_shift(frame, to_double(world_from_model).point(to_double(box.center())), r.shift_x,
                r.shift_y);
 
@@ -258,7 +264,7 @@ const FrustumForms& InstancePool::cluster_forms(std::uint32_t c) {
                       b = std::size_t{r.at.key1} * model.clusters + c;
     const RayTree& tree = model.trees[std::size_t{r.segment} * model.clusters + c];
     const Affine3d map = interpolate(model.local_from_world[a], model.local_from_world[b], r.at.s);
-    current_->forms[c] = make_frustum_forms(r.rays, map, tree.bounds, pixels_before(r));
+    current_->forms[c] = make_frustum_forms(r.rays, map, tree.nodes[0].box(), pixels_before(r));
   }
   return current_->forms[c];
 }

@@ -1,6 +1,7 @@
 #include "common/trace/ray_blocks.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "common/base/parallel.h"
 
@@ -58,28 +59,37 @@ void append_ray_blocks(std::span<const std::uint32_t> triangles, std::span<const
   }
 }
 
+std::vector<WideBvhNode> take_nodes(WideBvh tree, std::uint32_t first,
+                                    std::span<const Triangle> triangles,
+                                    std::vector<RayBlock>& blocks) {
+  std::vector<std::uint32_t> first_block, in_leaf;
+  for (std::uint32_t leaf = 0; leaf < tree.leaf_count(); ++leaf) {
+    in_leaf.clear();
+    for (const std::uint32_t item : tree.leaf(leaf)) {
+      if (item == kNoItem) break;
+      in_leaf.push_back(first + item);
+    }
+    first_block.push_back(static_cast<std::uint32_t>(blocks.size()));
+    append_ray_blocks(in_leaf, triangles, blocks);
+  }
+  for (WideBvhNode& node : tree.nodes)
+    for (WideBvhChild& child : node.child)
+      if (child.is_leaf()) child = WideBvhChild::leaf(first_block[child.index()]);
+  tree.nodes.shrink_to_fit();
+  blocks.shrink_to_fit();
+  return std::move(tree.nodes);
+}
+
 RaySegment::RaySegment(const ModelView& model, std::uint32_t segment)
     : nodes_(model.cluster_count()), blocks_(nodes_.size()), trees_(nodes_.size()) {
   parallel_chunks(nodes_.size(), 1, [&](std::size_t c, std::size_t) {
-    WideBvh tree = build_wide_bvh(model.cluster_fuzzy_boxes(segment, c), kBins);
-    if (tree.nodes.empty()) return;
-    std::vector<std::uint32_t> first_block, triangles;
-    for (std::uint32_t leaf = 0; leaf < tree.leaf_count(); ++leaf) {
-      triangles.clear();
-      for (const std::uint32_t item : tree.leaf(leaf)) {
-        if (item == kNoItem) break;
-        triangles.push_back(model.clusters[c].first_triangle + item);
-      }
-      first_block.push_back(static_cast<std::uint32_t>(blocks_[c].size()));
-      append_ray_blocks(triangles, model.triangles, blocks_[c]);
-    }
-    for (WideBvhNode& node : tree.nodes)
-      for (WideBvhChild& child : node.child)
-        if (child.is_leaf()) child = WideBvhChild::leaf(first_block[child.index()]);
-    nodes_[c] = std::move(tree.nodes);
-    nodes_[c].shrink_to_fit();
-    blocks_[c].shrink_to_fit();
-    trees_[c] = {nodes_[c], blocks_[c].data(), nodes_[c][0].box()};
+    nodes_[c] = take_nodes(build_wide_bvh(model.cluster_fuzzy_boxes(segment, c), kBins),
+                           model.clusters[c].first_triangle, model.triangles, blocks_[c]);
+    if (nodes_[c].empty()) return;
+    trees_[c] = {nodes_[c], blocks_[c].data(), {}};
+    const Aabb box = nodes_[c][0].box();
+    for (std::size_t k = 0; k < 3; ++k)
+      trees_[c].size[k] = std::max(std::abs(box.lo[k]), std::abs(box.hi[k]));
   });
 }
 

@@ -28,6 +28,12 @@ class RaySegment {
   std::vector<RayTree> trees_;
 };
 
+/// The nodes of a tree over triangles, which count from `first`, with links to the first blocks of
+/// leaves, which are appended to `blocks`.
+std::vector<WideBvhNode> take_nodes(WideBvh tree, std::uint32_t first,
+                                    std::span<const Triangle> triangles,
+                                    std::vector<RayBlock>& blocks);
+
 /// Appends a leaf's triangles to `blocks`: as few blocks as hold them in order, each of at most
 /// kBlockVertices vertices.
 void append_ray_blocks(std::span<const std::uint32_t> triangles, std::span<const Triangle> all,

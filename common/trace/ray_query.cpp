@@ -37,8 +37,11 @@ struct RayQuery::State {
 };
 
 struct QueryMoment::Data {
+  Data(std::shared_ptr<const void> state, const RayTracer& tracer, const KeyInterval& time)
+      : query(std::move(state)), moment(tracer, time) {}
+
   std::shared_ptr<const void> query;  ///< the state that it is of
-  KeyInterval at;
+  RayMoment moment;
 };
 QueryMoment::QueryMoment(std::shared_ptr<const Data> data) : data_(std::move(data)) {}
 
@@ -62,16 +65,16 @@ bool RayQuery::any_hit(const QueryRay& ray, const KeyInterval& time) const {
 }
 QueryHit RayQuery::closest_hit(const QueryRay& ray, const QueryMoment& moment) const {
   require_own(*state_, *moment.data_);
-  return state_->tracer.trace(ray, moment.data_->at, RayAim::kClosest);
+  return moment.data_->moment.trace(ray, RayAim::kClosest);
 }
 bool RayQuery::any_hit(const QueryRay& ray, const QueryMoment& moment) const {
   require_own(*state_, *moment.data_);
-  return state_->tracer.trace(ray, moment.data_->at, RayAim::kAny).is_hit();
+  return moment.data_->moment.trace(ray, RayAim::kAny).is_hit();
 }
 
 QueryMoment RayQuery::prepare(const KeyInterval& time) const {
   state_->require_time(time);
-  return QueryMoment(std::make_shared<const QueryMoment::Data>(QueryMoment::Data{state_, time}));
+  return QueryMoment(std::make_shared<const QueryMoment::Data>(state_, state_->tracer, time));
 }
 
 void RayQuery::closest_hits(const QueryRay* rays, const KeyInterval* times, QueryHit* hits,

@@ -7,7 +7,7 @@
 #include "common/base/parallel.h"
 #include "common/trace/query_keys.h"
 #include "common/trace/ray_blocks.h"
-#include "common/trace/scaled_ray.h"
+#include "common/trace/world_tree.h"
 
 namespace mdk {
 namespace {
@@ -31,12 +31,15 @@ struct RayTracer::Data {
     for (const RaySegment& segment : segments)
       trees.insert(trees.end(), segment.trees().begin(), segment.trees().end());
     find_times();
+    world_trees = std::make_unique<std::atomic<const WorldTree*>[]>(model.segment_count());
+    for (const Aabb& box : model.key_boxes)
+      key_boxes.push_back({{box.lo.x, box.lo.y, box.lo.z, 0}, {box.hi.x, box.hi.y, box.hi.z, 0}});
     rays = {.center = model.bounds.center(),
             .diagonal = diagonal(model.bounds),
             .clusters = model.cluster_count(),
             .top_nodes = top.nodes(),
             .top_roots = top.roots(),
-            .key_boxes = model.key_boxes.data(),
+            .key_boxes = key_boxes.data(),
             .top_boxes = top.boxes(),
             .top_links = top.links(),
             .local_from_world = model.local_from_world.data(),
@@ -46,20 +49,44 @@ struct RayTracer::Data {
             .trees = trees.data(),
             .poses = &poses};
   }
+  ~Data() {
+    for (std::uint32_t s = 0; s < model.segment_count(); ++s) delete world_trees[s].load();
+  }
   Data(const Data&) = delete;
   Data& operator=(const Data&) = delete;
 
   void find_times() {
     for (std::uint32_t key = 0; key < model.key_count(); ++key) {
       KeyTimes& times = key_times.emplace_back();
-      times.segment_at = segment_of(model, at_key(key));
+      times.segment_at = mdk::segment_of(model, at_key(key));
       times.has_before = key > 0 && model.clips[clip_of_key(model, key)].first_key != key;
-      if (times.has_before) times.segment_before = segment_of(model, {key - 1, key, 0.5f});
+      if (times.has_before) times.segment_before = mdk::segment_of(model, {key - 1, key, 0.5f});
     }
   }
 
+  std::uint32_t segment_of(const KeyInterval& at) const {
+    const KeyTimes& times = key_times[at.key1];
+    return at.key0 == at.key1 ? times.segment_at : times.segment_before;
+  }
+
+  /// The hierarchy in the world that moments of a segment refit; the first one makes it. Without a
+  /// lock: a thread that waits for its own loop might come by here again. Two that come at once
+  /// make it twice.
+  const WorldTree& world_tree(std::uint32_t segment, const VertexSource& source) {
+    const WorldTree* found = world_trees[segment].load(std::memory_order_acquire);
+    if (found != nullptr) return *found;
+    auto made = std::make_unique<const WorldTree>(model, source);
+    if (world_trees[segment].compare_exchange_strong(found, made.get(),
+                                                     std::memory_order_acq_rel)) {
+      moment_bytes += made->bytes();
+      return *made.release();
+    }
+    return *found;
+  }
+
   struct KeyTimes {
-    std::uint32_t segment_at = 0, segment_before = 0;  ///< of the key, and of the interval before it
+    std::uint32_t segment_at = 0,
+                  segment_before = 0;  ///< of the key, and of the interval before it
     bool has_before = false;
   };
 
@@ -70,6 +97,9 @@ struct RayTracer::Data {
   std::vector<RaySegment> segments;
   std::vector<RayTree> trees;
   std::vector<KeyTimes> key_times;
+  std::vector<KeyBox> key_boxes;
+  std::unique_ptr<std::atomic<const WorldTree*>[]> world_trees;  ///< by segment
+  std::atomic<std::size_t> moment_bytes = 0;                     ///< theirs, and of moments
   RayModel rays;
 };
 
@@ -86,25 +116,61 @@ bool RayTracer::has_time(const KeyInterval& at) const {
 
 const RayModel& RayTracer::rays() const { return data_->rays; }
 
-std::uint32_t RayTracer::segment(const KeyInterval& time) const {
-  const Data::KeyTimes& times = data_->key_times[time.key1];
-  return time.key0 == time.key1 ? times.segment_at : times.segment_before;
-}
+std::uint32_t RayTracer::segment(const KeyInterval& time) const { return data_->segment_of(time); }
 
 std::size_t RayTracer::bytes() const {
-  std::size_t sum = data_->poses.bytes() + data_->top.bytes() + data_->maps.bytes() +
-                    data_->trees.size() * sizeof(RayTree) +
+  std::size_t sum = data_->moment_bytes.load() + data_->poses.bytes() + data_->top.bytes() +
+                    data_->maps.bytes() + data_->trees.size() * sizeof(RayTree) +
                     data_->key_times.size() * sizeof(Data::KeyTimes);
   for (const RaySegment& segment : data_->segments) sum += segment.bytes();
   return sum;
 }
 
 QueryHit RayTracer::trace(const QueryRay& ray, const KeyInterval& time, RayAim aim) const {
-  const ScaledRay scaled(ray);
-  if (!scaled.usable) return {};
-  RayHit hit = scaled.nothing_yet();
-  trace_ray(data_->rays, scaled.ray, time, segment(time), aim, hit);
-  return scaled.in_callers_lengths(hit);
+  return trace_ray(data_->rays, ray, time, data_->segment_of(time), aim);
+}
+
+struct RayMoment::Posed {
+  PosedWorldTree tree;
+  std::size_t bytes;
+};
+
+RayMoment::RayMoment(const RayTracer& tracer, const KeyInterval& time)
+    : tracer_(tracer), time_(time) {}
+
+RayMoment::~RayMoment() {
+  const Posed* posed = posed_.load();
+  if (posed == nullptr) return;
+  tracer_.data_->moment_bytes -= posed->bytes;
+  delete posed;
+}
+
+QueryHit RayMoment::trace(const QueryRay& ray, RayAim aim) const {
+  const Posed* posed = posed_.load(std::memory_order_acquire);
+  if (posed == nullptr) {
+    // What refitting takes, in rays; and making the hierarchy first.
+    constexpr std::uint32_t kTrianglesPerRay = 64, kNewTrianglesPerRay = 8, kLeastRays = 64;
+    const RayTracer::Data& data = *tracer_.data_;
+    const bool is_new = data.world_trees[data.segment_of(time_)].load() == nullptr;
+    const std::uint32_t enough = kLeastRays + data.model.triangle_count() /
+                                                  (is_new ? kNewTrianglesPerRay : kTrianglesPerRay);
+    // One ray is the one past them: it makes what the others then use.
+    if (rays_.fetch_add(1, std::memory_order_relaxed) != enough)
+      return tracer_.trace(ray, time_, aim);
+    posed = make_posed();
+  }
+  return trace_posed(posed->tree.scene(), ray, aim);
+}
+
+const RayMoment::Posed* RayMoment::make_posed() const {
+  RayTracer::Data& data = *tracer_.data_;
+  const VertexSource source{data.poses.key(time_.key0), data.poses.key(time_.key1), time_.s};
+  PosedWorldTree tree(data.world_tree(data.segment_of(time_), source), source);
+  const std::size_t bytes = tree.bytes();
+  const Posed* posed = new Posed{std::move(tree), bytes};
+  data.moment_bytes += bytes;
+  posed_.store(posed, std::memory_order_release);
+  return posed;
 }
 
 }  // namespace mdk

@@ -2,7 +2,9 @@
 // its public face; scenes call it for each character that a ray enters.
 #pragma once
 
+#include <atomic>
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 
 #include "common/motion/model.h"
@@ -34,12 +36,36 @@ class RayTracer {
   const RayModel& rays() const;
   std::uint32_t segment(const KeyInterval& time) const;
 
-  /// What it holds now.
+  /// What it holds now, moments included.
   std::size_t bytes() const;
 
  private:
+  friend class RayMoment;
   struct Data;
   std::unique_ptr<Data> data_;
+};
+
+/// One time of a tracer, for many rays: the first ones are traced as at a time of their own; when
+/// there were enough of them for it to pay, the one that comes next poses the model and refits one
+/// hierarchy over it. Safe to use from many threads at once; the tracer must outlive it.
+class RayMoment {
+ public:
+  RayMoment(const RayTracer& tracer, const KeyInterval& time);
+  ~RayMoment();
+  RayMoment(const RayMoment&) = delete;
+  RayMoment& operator=(const RayMoment&) = delete;
+
+  /// RayTracer::trace() at this time, to the bit.
+  QueryHit trace(const QueryRay& ray, RayAim aim) const;
+
+ private:
+  struct Posed;
+  const Posed* make_posed() const;
+
+  const RayTracer& tracer_;
+  const KeyInterval time_;
+  mutable std::atomic<std::uint32_t> rays_ = 0;
+  mutable std::atomic<const Posed*> posed_ = nullptr;
 };
 
 }  // namespace mdk

@@ -228,6 +228,42 @@ TEST(RayQuery, AListAtMixedTimesGivesWhatEachRayGivesOnAnyNumberOfThreads) {
   }
 }
 
+TEST(RayQuery, AMomentGivesBruteForcesHitsBeforeAndAfterItIsPosed) {
+  const ResetIsa reset;
+  for (auto& [name, sequence] : test::agreement_scenes()) {
+    const DecomposeResult baked = bake(std::move(sequence));
+    const ModelView model = baked.model.view();
+    const RayQuery query(ModelHandle::make(model));
+    RayMaker make(model, 17);
+    // The first moment makes the hierarchy, the second is refitted to another time.
+    for (const KeyInterval& at : {make.time(), make.time()}) {
+      const QueryMoment moment = query.prepare(at);
+      const std::size_t before = query.bytes();
+      std::vector<QueryRay> rays;
+      std::vector<QueryHit> expected;
+      for (int i = 0; i < 150; ++i) {
+        rays.push_back(make.ray(at));
+        expected.push_back(brute_force_closest_hit(model, rays.back(), at));
+      }
+      for (int round = 0; round < 2 || query.bytes() == before; ++round) {
+        ASSERT_LT(round, 100'000) << name << " is never posed";
+        for (std::size_t i = 0; i < rays.size(); ++i) {
+          limit_isa(available_isas()[i % available_isas().size()]);
+          ASSERT_TRUE(is_same(query.closest_hit(rays[i], moment), expected[i])) << name << i;
+        }
+      }
+      for (const std::string_view isa : available_isas()) {
+        limit_isa(isa);
+        for (std::size_t i = 0; i < rays.size(); ++i) {
+          ASSERT_TRUE(is_same(query.closest_hit(rays[i], moment), expected[i])) << name << i;
+          ASSERT_EQ(query.any_hit(rays[i], moment), expected[i].is_hit()) << name << i << isa;
+        }
+      }
+      reset_isa();
+    }
+  }
+}
+
 TEST(RayQuery, RaysWithoutDirectionOrSenseHitNothing) {
   const DecomposeResult baked = bake(test::bending_tube(10, 8, 2));
   const ModelView model = baked.model.view();
@@ -238,6 +274,36 @@ TEST(RayQuery, RaysWithoutDirectionOrSenseHitNothing) {
                               QueryRay{inside, {inf, 0, 0}}, QueryRay{{nan, 0, 0}, {1, 0, 0}},
                               QueryRay{inside, {1, 0, 0}, 1, 1}, QueryRay{inside, {1, 0, 0}, nan}})
     EXPECT_FALSE(query.any_hit(ray, at_key(0)));
+}
+
+TEST(RayQuery, DirectionsOfAnyLengthGiveAFiniteDepthOrNone) {
+  const ResetIsa reset;
+  const DecomposeResult baked = bake(test::bending_tube(10, 8, 2));
+  const ModelView model = baked.model.view();
+  const RayQuery query(ModelHandle::make(model));
+  const std::vector<Vec3f> vertices = vertices_at(model, at_key(0));
+  const Triangle& aimed_at = model.triangles[40];
+  const Vec3f on_it =
+      (vertices[aimed_at.v[0]] + vertices[aimed_at.v[1]] + vertices[aimed_at.v[2]]) * (1.0f / 3);
+  const Vec3f outside = on_it - Vec3f{0, 0, 10};
+  int near = 0, far = 0;
+  for (int exponent = -149; exponent <= 127; ++exponent) {
+    const QueryRay ray{outside, Vec3f{0, 0, std::ldexp(1.0f, exponent)}};
+    const QueryHit expected = brute_force_closest_hit(model, ray, at_key(0));
+    // A wall that is farther than the largest float, in lengths of the direction, is not hit.
+    EXPECT_EQ(std::isfinite(expected.t), expected.is_hit()) << exponent;
+    (expected.is_hit() ? near : far) += 1;
+    for (const std::string_view isa : available_isas()) {
+      limit_isa(isa);
+      EXPECT_TRUE(is_same(query.closest_hit(ray, at_key(0)), expected)) << exponent << isa;
+      EXPECT_EQ(query.any_hit(ray, at_key(0)), expected.is_hit()) << exponent << isa;
+    }
+    reset_isa();
+  }
+  EXPECT_GT(near, 200);
+  EXPECT_GT(far, 10);
+  const QueryRay reported{on_it + Vec3f{0, 0, 10}, {0, 0, -1e-40f}};
+  EXPECT_FALSE(query.closest_hit(reported, at_key(0)).is_hit());
 }
 
 /// Whether a point is inside the closed mesh: by the crossings of rays in three odd directions,

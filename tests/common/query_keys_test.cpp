@@ -1,27 +1,20 @@
-// The clusters whose boxes a ray enters: none is missed, hardly any it passes is named, the nearest
-// come first, on every instruction set.
+// The hierarchy over clusters has each of them once, in the box it has at every key, and boxes above
+// that hold those below; key poses are what decoding gives.
 #include "common/trace/query_keys.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <limits>
 #include <vector>
 
-#include "common/base/isa.h"
 #include "common/motion/posed_mesh.h"
 #include "tests/common/random_boxes.h"
 
 namespace mdk {
 namespace {
 
-constexpr std::size_t kCounts[] = {1, 15, 16, 17, 80};
+constexpr std::size_t kCounts[] = {1, 15, 16, 17, 40, 80, 700};
 constexpr float kSide = 10;
-
-class ResetIsa {
- public:
-  ~ResetIsa() { reset_isa(); }
-};
 
 /// A model of nothing but clusters whose boxes move between two keys.
 ModelStorage moving_clusters(std::size_t count, std::uint64_t seed) {
@@ -39,70 +32,47 @@ ModelStorage moving_clusters(std::size_t count, std::uint64_t seed) {
   return storage;
 }
 
-struct Line {
-  Vec3d origin, direction;
-};
-
-Line random_line(test::Random& random) {
-  const Aabb wide{{-kSide, -kSide, -kSide}, {2 * kSide, 2 * kSide, 2 * kSide}};
-  const Aabb model{{0, 0, 0}, {kSide, kSide, kSide}};
-  const Vec3d from = to_double(random.point(wide)), to = to_double(random.point(model));
-  return {from, to - from};
+Aabb box_of(const TopBoxes& boxes, std::uint32_t c) {
+  return {{boxes.bounds[0][c], boxes.bounds[2][c], boxes.bounds[4][c]},
+          {boxes.bounds[1][c], boxes.bounds[3][c], boxes.bounds[5][c]}};
 }
 
-/// Where a line enters a box that is grown by `margin`; infinity where it passes or enters late.
-double entry(const Line& line, const Aabb& box, double margin, double t_max) {
-  double near = 0, far = t_max;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const double a = (box.lo[k] - margin - line.origin[k]) / line.direction[k];
-    const double b = (box.hi[k] + margin - line.origin[k]) / line.direction[k];
-    near = std::max(near, std::min(a, b));
-    far = std::min(far, std::max(a, b));
-  }
-  return near <= far ? near : std::numeric_limits<double>::infinity();
-}
+class TopTreeOverClusters : public testing::TestWithParam<std::size_t> {};
 
-class EnterBoxes : public testing::TestWithParam<std::size_t> {};
-
-TEST_P(EnterBoxes, FindsEveryBoxThatTheRayEntersAndHardlyAnyOther) {
-  const ResetIsa reset;
+TEST_P(TopTreeOverClusters, HasEachOnceInABoxThatThoseAboveHold) {
   const std::size_t count = GetParam();
-  const ModelStorage storage = moving_clusters(count, 7 + count);
+  ModelStorage storage = moving_clusters(count, 7 + count);
+  for (Cluster& cluster : storage.clusters) cluster.triangle_count = 1;
+  if (count > 2) storage.clusters[2].triangle_count = 0;  // is left out
   const ModelView model = storage.view();
-  const BoxColumns columns(model);
-  const Aabb bounds{{0, 0, 0}, {kSide + 3, kSide + 3, kSide + 3}};
-  test::Random random(3);
-  std::size_t entered = 0;
-  for (int i = 0; i < 500; ++i) {
-    const KeyInterval at =
-        i % 3 == 0 ? at_key(i % 2) : KeyInterval{0, 1, static_cast<float>(random.unit())};
-    const Line line = random_line(random);
-    const BoxRay ray = make_box_ray({line.origin, line.direction}, Affine3d{}, bounds, 0);
-    const float t_max = i % 2 == 0 ? std::numeric_limits<float>::infinity() : 0.5f;
-    for (const std::string_view isa : available_isas()) {
-      limit_isa(isa);
-      std::vector<EnteredBox> named(count);
-      named.resize(enter_boxes(ray, columns.at(at), t_max, named.data()));
-      EXPECT_TRUE(std::ranges::is_sorted(named, {}, &EnteredBox::enter)) << isa;
-      for (std::uint32_t c = 0; c < count; ++c) {
-        const auto found = std::ranges::find(named, c, &EnteredBox::box);
-        const Aabb box = cluster_world_box(model, c, at);
-        const double enters = entry(line, box, 0, t_max);
-        if (std::isfinite(enters)) {
-          ++entered;
-          ASSERT_NE(found, named.end()) << isa << ", line " << i << " enters box " << c;
-          EXPECT_LE(found->enter, enters + 1e-6) << isa << ", line " << i;
-        } else if (found != named.end()) {
-          EXPECT_TRUE(std::isfinite(entry(line, box, 1e-3, t_max + 1e-3)))
-              << isa << ", line " << i << " passes box " << c;
+  const TopTree tree(model);
+  std::vector<int> seen(count), reached(tree.nodes());
+  for (std::uint32_t i = 1; i <= tree.roots(); ++i) ++reached[tree.nodes() - i];
+  for (std::uint32_t n = tree.nodes(); n-- > 0;) {
+    EXPECT_EQ(reached[n], 1) << "node " << n;
+    const TopLinks& links = tree.links()[n];
+    ASSERT_GE(links.count, 1u);
+    ASSERT_LE(links.count, kTopWidth);
+    for (std::uint32_t c = 0; c < links.count; ++c) {
+      const std::uint32_t child = links.child[c].index();
+      ++(links.child[c].is_leaf() ? seen[child] : reached[child]);
+      for (std::uint32_t key = 0; key < model.key_count(); ++key) {
+        const TopBoxes* const boxes = tree.boxes() + std::size_t{tree.nodes()} * key;
+        const Aabb box = box_of(boxes[n], c);
+        if (links.child[c].is_leaf()) {
+          EXPECT_EQ(box, model.world_box(key, child));
+          continue;
         }
+        for (std::uint32_t below = 0; below < tree.links()[child].count; ++below)
+          EXPECT_TRUE(box.contains(box_of(boxes[child], below)));
       }
     }
   }
-  EXPECT_GT(entered, 10u);
+  for (std::size_t c = 0; c < count; ++c)
+    EXPECT_EQ(seen[c], model.clusters[c].triangle_count == 0 ? 0 : 1) << "cluster " << c;
 }
 
-INSTANTIATE_TEST_SUITE_P(OfAnyNumber, EnterBoxes, testing::ValuesIn(kCounts));
+INSTANTIATE_TEST_SUITE_P(OfAnyNumber, TopTreeOverClusters, testing::ValuesIn(kCounts));
 
 }  // namespace
 }  // namespace mdk

@@ -2,6 +2,7 @@
 #include "common/trace/kernels/crowd_kernels.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #undef HWY_TARGET_INCLUDE
@@ -10,7 +11,8 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 // after highway.h
-#include "common/trace/kernels/ray_walk-inl.h"
+#include "common/trace/kernels/ray_boxes-inl.h"
+#include "common/trace/kernels/ray_test-inl.h"
 #include "common/trace/kernels/tile_walk-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -176,12 +178,70 @@ struct TrianglesFromOne {
   }
 };
 
-/// One pixel's line through an instance (ray_walk-inl.h).
-template <class Counter>
-class LineBlocks {
+/// Calls leaf(c) for the clusters that may be met, near ones first: enter(node, order) and
+/// is_past(order) as walk-inl.h has it, of a node of the model's hierarchy over clusters.
+template <class Enter, class IsPast, class Leaf>
+HWY_INLINE void walk_clusters(const RayModel& model, const Enter& enter, const IsPast& is_past,
+                              const Leaf& leaf) {
+  constexpr std::size_t kMaxTopDepth = 9;  // 16^8 clusters
+  WaitingChild stack[kTopWidth * kMaxTopDepth];
+  std::size_t size = 0;
+  const auto open = [&](std::uint32_t node) {
+    alignas(64) float order[kTopWidth];
+    const TopLinks& links = model.top_links[node];
+    const std::size_t bottom = size;
+    for (std::uint32_t entered = enter(node, order) & ((1u << links.count) - 1); entered != 0;
+         entered &= entered - 1) {
+      const auto c = static_cast<std::size_t>(__builtin_ctz(entered));
+      const WaitingChild child{order[c], links.child[c]};
+      std::size_t place = size++;
+      for (; place > bottom && stack[place - 1].order < child.order; --place)
+        stack[place] = stack[place - 1];
+      stack[place] = child;
+    }
+  };
+  for (std::uint32_t i = 1; i <= model.top_roots; ++i) open(model.top_nodes - i);
+  while (size > 0) {
+    const WaitingChild next = stack[--size];
+    if (is_past(next.order)) continue;
+    if (next.child.is_leaf()) {
+      leaf(next.child.index());
+    } else {
+      open(next.child.index());
+    }
+  }
+}
+
+/// Planes of the boxes of a node of that hierarchy, at an instance's time.
+class NodeAtTime {
  public:
-  LineBlocks(const InstanceRays& instance, CrowdImage& image, std::uint32_t x, std::uint32_t y,
-             float place_x, float place_y, const Counter& counter)
+  NodeAtTime(const InstanceRays& instance, std::uint32_t node) : s_(instance.at.s) {
+    const RayModel& model = *instance.model;
+    const TopBoxes* boxes = model.top_boxes + node;
+    from_ = boxes + std::size_t{model.top_nodes} * instance.at.key0;
+    to_ = boxes + std::size_t{model.top_nodes} * instance.at.key1;
+  }
+  template <class D>
+  HWY_INLINE hn::Vec<D> row(D d, std::size_t r, std::size_t first) const {
+    const auto a = hn::Load(d, from_->bounds[r] + first), b = hn::Load(d, to_->bounds[r] + first);
+    return hn::Add(a, hn::Mul(hn::Sub(b, a), hn::Set(d, s_)));
+  }
+
+ private:
+  const TopBoxes *from_, *to_;
+  float s_;
+};
+
+HWY_INLINE FourFloats four_floats(const Vec3d& v) {
+  return to_float(FourDoubles::load(std::array{v.x, v.y, v.z, 0.0}.data()));
+}
+
+/// One pixel's line through an instance.
+template <class Counter>
+class PixelLine {
+ public:
+  PixelLine(const InstanceRays& instance, CrowdImage& image, std::uint32_t x, std::uint32_t y,
+            float place_x, float place_y, const Counter& counter)
       : instance_(instance),
         image_(image),
         column_(x),
@@ -192,9 +252,69 @@ class LineBlocks {
     set_limit();
   }
 
-  float limit() const { return limit_; }
-  static constexpr bool finished() { return false; }
+  void trace() {
+    const RayModel& model = *instance_.model;
+    const KeyInterval& at = instance_.at;
+    const Vec3d origin = to_double(instance_.rays.origin),
+                direction = to_double(instance_.rays.corner) +
+                            to_double(instance_.rays.du) * static_cast<double>(x_) +
+                            to_double(instance_.rays.dv) * static_cast<double>(y_);
+    const FourFloats slack = FourFloats::all(instance_.line_slack);
+    const FourFloats rounding = FourFloats::all(0x1p-19f);
+    const FourFloats from = four_floats(origin), along = four_floats(direction);
+    const rays::BoxRay world(from, along,
+                             slack + (abs(from) + FourFloats::load(instance_.size)) * rounding, 0);
+    if (!world.enters(FourFloats::load(instance_.lo), FourFloats::load(instance_.hi), hit_.t))
+      return;
+    const FloatTag d;
+    const rays::LaneRay<FloatTag> lanes(d, world);
+    const RayTree* const trees = model.trees + std::size_t{instance_.segment} * model.clusters;
+    const Vec3d from_center = origin - to_double(model.center);
+    const auto map_into = [&](std::uint32_t c) {
+      const std::size_t a = at.key0 * std::size_t{model.clusters} + c,
+                        b = at.key1 * std::size_t{model.clusters} + c;
+      const std::uint8_t needed = at.key0 == at.key1 ? kRegularKey : kRegularInterval;
+      if ((model.map_kinds[a] & needed) == 0)
+        return rays::map_irregular(
+            interpolate(model.local_from_world[a], model.local_from_world[b], at.s), direction,
+            origin);
+      rays::MappedRay ray =
+          rays::map_ray(model.key_maps[a], model.key_maps[b], at.s, direction, from_center);
+      ray.origin = ray.origin + four_floats(to_double(model.local_centers[c]));
+      return ray;
+    };
+    walk_clusters(
+        model,
+        [&](std::uint32_t node, float* order) {
+          const NodeAtTime boxes(instance_, node);
+          counter_.nodes(model.top_links[node].count);
+          std::uint32_t entered = 0;
+          for (std::size_t i = 0; i < kTopWidth; i += hn::Lanes(d))
+            entered |= lanes.enter(d, hit_.t, order + i, [&](std::uint32_t row) {
+              return boxes.row(d, row, i);
+            }) << i;
+          return entered;
+        },
+        [&](float order) { return order > hit_.t; },
+        [&](std::uint32_t c) {
+          counter_.clusters(1);
+          const rays::MappedRay mapped = map_into(c);
+          const RayTree& tree = trees[c];
+          const rays::BoxRay local(
+              mapped.origin, mapped.direction,
+              mapped.stretch * slack +
+                  (abs(mapped.origin) + FourFloats::load(tree.size)) * rounding,
+              0);
+          rays::RayInTree in_tree(local, RayAim::kClosest, hit_);
+          walk_bvh(tree.nodes, in_tree, [&](std::uint32_t number) {
+            const RayBlock* block = tree.blocks + number;
+            test(*block);
+            while (block->has_next) test(*++block);
+          });
+        });
+  }
 
+ private:
   void test(const RayBlock& block) {
     const FloatTag d;
     counter_.candidates(block.count);
@@ -215,17 +335,17 @@ class LineBlocks {
     set_limit();
   }
 
- private:
   void set_limit() {
     best_ = image_.inverse_depth(column_, row_);
-    limit_ = (1 + 0x1p-20f) / best_ + instance_.line_reach;
+    hit_.t = (1 + 0x1p-20f) / best_ + instance_.line_reach;
   }
 
   const InstanceRays& instance_;
   CrowdImage& image_;
   std::uint32_t column_, row_;
   float x_, y_;
-  float best_, limit_;
+  float best_;
+  RayHit hit_;  ///< of it only t is in use: how far boxes matter
   Counter counter_;
   ProjectedBlock projected_;
 };
@@ -424,20 +544,13 @@ class CrowdTile {
   void trace_lines(const InstanceRays& instance, const PixelRange& pixels) {
     const float nearest_inverse = (1 + 0x1p-20f) / instance.screen.nearest;
     const float left = left_ - instance.shift_x + 0.5f, top = top_ - instance.shift_y + 0.5f;
-    const Vec3d corner = to_double(instance.rays.corner), du = to_double(instance.rays.du),
-                dv = to_double(instance.rays.dv);
     for (int y = pixels.first_y; y <= pixels.last_y; ++y)
       for (int x = pixels.first_x; x <= pixels.last_x; ++x) {
         const auto column = static_cast<std::uint32_t>(x), row = static_cast<std::uint32_t>(y);
         if (image_.inverse_depth(column, row) > nearest_inverse) continue;
         if (counters_ != nullptr) ++counters_->lines;
         const float place_x = left + static_cast<float>(x), place_y = top + static_cast<float>(y);
-        const WorldRay ray{
-            to_double(instance.rays.origin),
-            corner + du * static_cast<double>(place_x) + dv * static_cast<double>(place_y), 0};
-        LineBlocks<Counter> blocks(instance, image_, column, row, place_x, place_y, counter_);
-        rays::RayWalk walk(*instance.model, ray, instance.at, instance.line_slack, blocks);
-        if (walk.enter_model()) walk.walk(instance.segment);
+        PixelLine<Counter>(instance, image_, column, row, place_x, place_y, counter_).trace();
       }
   }
 
@@ -452,51 +565,28 @@ class CrowdTile {
     const RayModel& model = *instance.model;
     const RayTree* trees = model.trees + std::size_t{instance.segment} * model.clusters;
     const TileInTree<Tester> rays(source_.model_forms(), tester);
-    const TopBoxes* from = model.top_boxes + std::size_t{model.top_nodes} * instance.at.key0;
-    const TopBoxes* to = model.top_boxes + std::size_t{model.top_nodes} * instance.at.key1;
-    constexpr std::size_t kMaxTopDepth = 9;
-    WaitingChild stack[kTopWidth * kMaxTopDepth];
-    std::size_t size = 0;
-    const auto open = [&](std::uint32_t node) {
-      const FloatTag d;
-      alignas(64) float bounds[6][kTopWidth], order[kTopWidth];
-      const auto s = hn::Set(d, instance.at.s);
-      for (std::size_t row = 0; row < 6; ++row)
-        for (std::size_t i = 0; i < kTopWidth; i += hn::Lanes(d)) {
-          const auto a = hn::Load(d, from[node].bounds[row] + i),
-                     b = hn::Load(d, to[node].bounds[row] + i);
-          hn::Store(hn::Add(a, hn::Mul(hn::Sub(b, a), s)), d, bounds[row] + i);
-        }
-      const TopLinks& links = model.top_links[node];
-      counter_.nodes(links.count);
-      std::uint32_t entered = rays.enter(bounds, order) & ((1u << links.count) - 1);
-      const std::size_t bottom = size;
-      for (; entered != 0; entered &= entered - 1) {
-        const auto c = static_cast<std::size_t>(__builtin_ctz(entered));
-        const WaitingChild child{order[c], links.child[c]};
-        std::size_t place = size++;
-        for (; place > bottom && stack[place - 1].order < child.order; --place)
-          stack[place] = stack[place - 1];
-        stack[place] = child;
-      }
-    };
-    for (std::uint32_t i = 1; i <= model.top_roots; ++i) open(model.top_nodes - i);
-    while (size > 0) {
-      const WaitingChild next = stack[--size];
-      if (rays.is_past(next.order)) continue;
-      if (!next.child.is_leaf()) {
-        open(next.child.index());
-        continue;
-      }
-      const std::uint32_t c = next.child.index();
-      counter_.clusters(1);
-      TileInTree<Tester> local(source_.cluster_forms(c), tester);
-      walk_bvh(trees[c].nodes, local, [&](std::uint32_t number) {
-        const RayBlock* block = trees[c].blocks + number;
-        tester.test(*block);
-        while (block->has_next) tester.test(*++block);
-      });
-    }
+    walk_clusters(
+        model,
+        [&](std::uint32_t node, float(&order)[kTopWidth]) {
+          const FloatTag d;
+          const NodeAtTime boxes(instance, node);
+          alignas(64) float bounds[6][kTopWidth];
+          for (std::size_t row = 0; row < 6; ++row)
+            for (std::size_t i = 0; i < kTopWidth; i += hn::Lanes(d))
+              hn::Store(boxes.row(d, row, i), d, bounds[row] + i);
+          counter_.nodes(model.top_links[node].count);
+          return rays.enter(bounds, order);
+        },
+        [&](float order) { return rays.is_past(order); },
+        [&](std::uint32_t c) {
+          counter_.clusters(1);
+          const TileInTree<Tester> local(source_.cluster_forms(c), tester);
+          walk_bvh(trees[c].nodes, local, [&](std::uint32_t number) {
+            const RayBlock* block = trees[c].blocks + number;
+            tester.test(*block);
+            while (block->has_next) tester.test(*++block);
+          });
+        });
   }
 
   static constexpr float kPixelPad = 2 * kBoundsMargin;

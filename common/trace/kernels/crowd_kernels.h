@@ -50,6 +50,7 @@ struct InstanceRays {
   std::uint32_t segment;
   const RayModel* model;
   VertexSource vertices;
+  alignas(16) float lo[4], hi[4], size[4];  ///< of the model at its time; size: from 0
   ScreenBox screen;  ///< in the picture, where no pixel outside hits the instance
   bool has_lines;    ///< its pixels go one by one
   float line_slack;  ///< by what boxes in the model must give way to a pixel's line

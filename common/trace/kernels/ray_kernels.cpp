@@ -1,24 +1,4 @@
-// The triangle test of single rays, in double. With corners a, b, c seen from the ray's origin, the
-// weight of c at the direction d is ((b - a) x (b + a)) . d, exactly negated when a and b change
-// places: two triangles that share an edge agree on which side the ray passes.
-//
-//     hit where the three weights have one sign, each give or take its rounding: also a ray that
-//     passes a vertex exactly, where all signs are rounding, hits one of the triangles around it
-//     p = (w_a a + w_b b + w_c c) / (w_a + w_b + w_c)      weights of the wrong sign count as 0, so
-//                                                          p is on the triangle in any case
-//     t = p.d / d.d                                        and p must lie close to the ray
-//
-// The last clause does nothing for triangles of sane shape. For slivers, whose weights are all
-// rounding, it keeps hits where any box around the triangle shows them.
-//
-// In float, triangles are rejected before that. With the ray along an axis of the image (x, y), the
-// origin at (0, 0), an edge's weight is a_x b_y - a_y b_x. Let g be no less than the distance of
-// any point of the model from the origin, m the largest |x|, |y| of the corners. A hit has a point
-// of the triangle within 2^-20 g of the ray, so within sqrt(2) 2^-20 g of (0, 0) along x and along
-// y, which moves a weight by 1.42 * 2^-18 g m; rounding the corners to 6 * 2^-24 g moves it by 1.5
-// * 2^-20 g m, and the products round by 2^-21 g m: in all less than R m + R^2, R = 1.25 * 2^-17 g.
-// So there is no hit where one weight is past R m + R^2 and another below its negative; nor where
-// all corners lie beyond the hit so far, or before t_min, by more than R.
+// How a single ray goes through a model at a time of its own, or through one that was posed.
 #include "common/trace/kernels/ray_kernels.h"
 
 #include <algorithm>
@@ -29,7 +9,9 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 // after highway.h
-#include "common/trace/kernels/ray_walk-inl.h"
+#include "common/trace/kernels/ray_boxes-inl.h"
+#include "common/trace/kernels/ray_test-inl.h"
+#include "common/trace/kernels/walk-inl.h"
 #include "common/trace/query_keys.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -37,243 +19,228 @@ namespace mdk {
 namespace HWY_NAMESPACE {
 namespace rays {
 
-using DoubleTag = hn::CappedTag<double, kBvhWidth>;
-using DoubleVec = hn::Vec<DoubleTag>;
-using DoublePoints = Points<DoubleTag>;
-
-// --- the test in double ---
-
-struct Weight {
-  DoubleVec value;
-  DoubleVec error;  ///< no less than what rounding may have done to the value
-};
-
-/// ((b - a) x (b + a)) . d; `rounding` is kRounding times the largest component of d.
-HWY_INLINE Weight edge_weight(const DoublePoints& a, const DoublePoints& b, const DoublePoints& d,
-                              DoubleVec rounding) {
-  const DoublePoints u = b - a, v = b + a;
-  return {dot(cross(u, v), d), hn::Mul(hn::Mul(sum_of_sizes(u), sum_of_sizes(v)), rounding)};
+HWY_INLINE FourFloats four_of(const Vec3f& v) {
+  const float f[4] = {v.x, v.y, v.z, 0};
+  return FourFloats::load(f);
 }
 
-/// About twenty roundings of 2^-53 each, relative to the sizes of all factors.
-constexpr double kRounding = 0x1p-48;
+/// All blocks of a leaf.
+template <class Vertices>
+HWY_INLINE void test_leaf(RayAndBlocks& ray, const RayBlock* block, const Vertices& vertices) {
+  ray.test(*block, vertices);
+  while (block->has_next) ray.test(*++block, vertices);
+}
 
-/// One ray against triangles.
-class RayTester {
+/// Vertices between two keys, which are decoded when the first block asks for one.
+class KeyVertices {
  public:
-  RayTester(const WorldRay& ray, RayHit& hit)
-      : ray_(ray),
-        hit_(hit),
-        direction_square_(dot(ray.direction, ray.direction)),
-        rounding_(kRounding * std::max({std::abs(ray.direction.x), std::abs(ray.direction.y),
-                                        std::abs(ray.direction.z)})) {}
+  KeyVertices(const KeyPoses& poses, const KeyInterval& at) : poses_(poses), at_(at) {}
 
-  /// `count` triangles, not more than a vector holds; corner k of triangle i is vertex
-  /// corner[k][i]. Places up to the lanes of a vector must be vertices, too.
-  void test(const std::uint32_t* const (&corner)[3], const std::uint32_t* triangle,
-            std::size_t count, const VertexSource& vertices) {
-    const auto points = [&](const std::uint32_t* index) {
-      const DoubleTag d;
-      alignas(64) double x[kBvhWidth], y[kBvhWidth], z[kBvhWidth];
-      for (std::size_t i = 0; i < hn::Lanes(d); ++i) {
-        const Vec3d v = to_double(vertices.position(index[i])) - ray_.origin;
-        x[i] = v.x;
-        y[i] = v.y;
-        z[i] = v.z;
-      }
-      return DoublePoints{hn::Load(d, x), hn::Load(d, y), hn::Load(d, z)};
-    };
-    test_lanes(points(corner[0]), points(corner[1]), points(corner[2]), triangle, count);
+  template <class D>
+  HWY_INLINE Points<D> points(D d, const RayBlock& block, std::size_t first) const {
+    if (HWY_UNLIKELY(source_.from == nullptr))
+      source_ = {poses_.key(at_.key0), poses_.key(at_.key1), at_.s};
+    return pose(d, block.vertex + first, source_);
   }
-
-  /// One triangle, by the same operations one after another.
-  void test_one(const Vec3f& corner_a, const Vec3f& corner_b, const Vec3f& corner_c,
-                std::uint32_t triangle) {
-    const Vec3d a = to_double(corner_a) - ray_.origin, b = to_double(corner_b) - ray_.origin,
-                c = to_double(corner_c) - ray_.origin;
-    const Vec3d& d = ray_.direction;
-    const auto size = [](const Vec3d& v) { return std::abs(v.x) + std::abs(v.y) + std::abs(v.z); };
-    const auto weight = [&](const Vec3d& p, const Vec3d& q, double& error) {
-      const Vec3d u = q - p, v = q + p;
-      error = size(u) * size(v) * rounding_;
-      return dot(cross(u, v), d);
-    };
-    double ea, eb, ec;
-    const double wa = weight(b, c, ea), wb = weight(c, a, eb), wc = weight(a, b, ec);
-    const double side = std::copysign(1.0, wa + wb + wc);
-    if (!(wa * side >= -ea && wb * side >= -eb && wc * side >= -ec)) return;
-    const auto share_of = [&](double w) { return w * side > 0 ? w * side : 0.0; };
-    const double sa = share_of(wa), sb = share_of(wb), sc = share_of(wc);
-    const double total = sa + sb + sc, share = 1.0 / total;
-    const Vec3d p = (a * sa + b * sb + c * sc) * share;
-    const double t = dot(p, d) / direction_square_;
-    const Vec3d off = p - d * t;
-    if (!(dot(off, off) <= dot(p, p) * 0x1p-40 && total > 0)) return;
-    keep({static_cast<float>(t), triangle, static_cast<float>(sb * share),
-          static_cast<float>(sc * share)});
+  HWY_INLINE Vec3f position(const RayBlock& block, std::size_t place) const {
+    return source_.position(block.vertex[place]);
   }
 
  private:
-  void keep(const RayHit& hit) {
-    const bool is_closer = hit.t < hit_.t || (hit.t == hit_.t && hit.triangle < hit_.triangle);
-    if (hit.t > ray_.t_min && is_closer) hit_ = hit;
-  }
-
-  HWY_INLINE void test_lanes(const DoublePoints& a, const DoublePoints& b, const DoublePoints& c,
-                             const std::uint32_t* triangles, std::size_t count) {
-    const DoubleTag d;
-    const DoublePoints direction = broadcast(d, ray_.direction);
-    const auto rounding = hn::Set(d, rounding_);
-    const Weight wa = edge_weight(b, c, direction, rounding),
-                 wb = edge_weight(c, a, direction, rounding),
-                 wc = edge_weight(a, b, direction, rounding);
-    const auto zero = hn::Zero(d);
-    const auto side = hn::CopySign(hn::Set(d, 1.0), hn::Add(hn::Add(wa.value, wb.value), wc.value));
-    const auto is_inner = [&](const Weight& w) {
-      return hn::Ge(hn::Mul(w.value, side), hn::Neg(w.error));
-    };
-    const auto inside = hn::And(hn::And(is_inner(wa), is_inner(wb)), is_inner(wc));
-    if (hn::AllFalse(d, inside)) return;
-
-    const auto share_of = [&](const Weight& w) { return hn::Max(hn::Mul(w.value, side), zero); };
-    const auto sa = share_of(wa), sb = share_of(wb), sc = share_of(wc);
-    const auto total = hn::Add(hn::Add(sa, sb), sc);
-    const auto share = hn::Div(hn::Set(d, 1.0), total);
-    const DoublePoints p = scaled(scaled(a, sa) + scaled(b, sb) + scaled(c, sc), share);
-    const auto t = hn::Div(dot(p, direction), hn::Set(d, direction_square_));
-    const DoublePoints off = p - scaled(direction, t);
-    const auto close = hn::Le(dot(off, off), hn::Mul(dot(p, p), hn::Set(d, 0x1p-40)));
-    // Written so that a corner that is not a number fails it.
-    const auto hit = hn::And(inside, hn::And(close, hn::Gt(total, zero)));
-    std::uint32_t lanes = mask_bits(d, hit) & ((1u << count) - 1);
-    if (lanes == 0) return;
-
-    alignas(64) double depth[kBvhWidth], bary1[kBvhWidth], bary2[kBvhWidth];
-    hn::Store(t, d, depth);
-    hn::Store(hn::Mul(sb, share), d, bary1);
-    hn::Store(hn::Mul(sc, share), d, bary2);
-    for (; lanes != 0; lanes &= lanes - 1) {
-      const auto i = static_cast<std::size_t>(__builtin_ctz(lanes));
-      keep({static_cast<float>(depth[i]), triangles[i], static_cast<float>(bary1[i]),
-            static_cast<float>(bary2[i])});
-    }
-  }
-
-  const WorldRay& ray_;
-  RayHit& hit_;
-  double direction_square_, rounding_;
+  const KeyPoses& poses_;
+  const KeyInterval& at_;
+  mutable VertexSource source_{nullptr, nullptr, 0};
 };
 
-/// One ray against the blocks of a model.
-class RayBlocks {
+/// One ray on its way through a model.
+class RayInModel {
  public:
-  RayBlocks(const RayModel& model, const WorldRay& ray, const KeyInterval& at, RayAim aim,
-            RayHit& hit)
-      : model_(model), ray_(ray), at_(at), aim_(aim), hit_(hit), tester_(ray, hit) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      origin_[k] = static_cast<float>(ray.origin[k]);
-      direction_[k] = static_cast<float>(ray.direction[k]);
-    }
-    reach_ = std::abs(model.center.x - origin_[0]) + std::abs(model.center.y - origin_[1]) +
-             std::abs(model.center.z - origin_[2]) + model.diagonal;
-  }
+  RayInModel(const RayModel& model, const ScaledRay& ray, const KeyInterval& at, RayAim aim,
+             RayHit& hit)
+      : model_(model),
+        at_(at),
+        ray_(ray, model.center, model.diagonal, aim, hit),
+        vertices_(*model.poses, at) {}
 
   void trace(std::uint32_t segment) {
-    RayWalk walk(model_, ray_, at_, reach_ * (1.25f * 0x1p-19f), *this);
-    if (!walk.enter_model()) return;
-    set_filter();
-    walk.walk(segment);
-  }
-
-  // For RayWalk.
-  float limit() const { return hit_.t; }
-  bool finished() const { return aim_ == RayAim::kAny && hit_.triangle != kNoHit; }
-  HWY_NOINLINE void test(const RayBlock& block) {
-    if (vertices_.from == nullptr)
-      vertices_ = {model_.poses->key(at_.key0), model_.poses->key(at_.key1), at_.s};
-    const FloatTag d;
-    Sixteen x, y, z, size;
-    const auto row_of = [&](const float(&row)[3], const Points<FloatTag>& p) {
-      return hn::MulAdd(hn::Set(d, row[0]), p.x,
-                        hn::MulAdd(hn::Set(d, row[1]), p.y, hn::Mul(hn::Set(d, row[2]), p.z)));
+    trees_ = model_.trees + std::size_t{segment} * model_.clusters;
+    const FourFloats s = FourFloats::all(at_.s);
+    const KeyBox &from = model_.key_boxes[at_.key0], &to = model_.key_boxes[at_.key1];
+    const auto side = [&](const float (&a)[4], const float (&b)[4]) {
+      return FourFloats::load(a) + (FourFloats::load(b) - FourFloats::load(a)) * s;
     };
-    for (std::size_t part = 0; part < Sixteen::kParts; ++part) {
-      const Points<FloatTag> posed = pose(d, block.vertex + part * hn::Lanes(d), vertices_);
-      const Points<FloatTag> p{hn::Sub(posed.x, hn::Set(d, origin_[0])),
-                               hn::Sub(posed.y, hn::Set(d, origin_[1])),
-                               hn::Sub(posed.z, hn::Set(d, origin_[2]))};
-      const auto across = row_of(image_[0], p), down = row_of(image_[1], p);
-      x.set(part, across);
-      y.set(part, down);
-      z.set(part, row_of(image_[2], p));
-      size.set(part, hn::Max(hn::Abs(across), hn::Abs(down)));
-    }
-    const auto tolerance = hn::Set(d, tolerance_), square = hn::Mul(tolerance, tolerance);
-    std::uint32_t passed = 0;
-    for (std::size_t first = 0; first < block.count; first += hn::Lanes(d)) {
-      const hn::RebindToSigned<FloatTag> di;
-      const hn::Rebind<std::uint8_t, FloatTag> db;
-      const auto place = [&](std::size_t k) {
-        return hn::PromoteTo(di, hn::LoadU(db, block.corner[k] + first));
-      };
-      const auto a = place(0), b = place(1), c = place(2);
-      const auto ax = x.pick(a), ay = y.pick(a), bx = x.pick(b), by = y.pick(b), cx = x.pick(c),
-                 cy = y.pick(c);
-      const auto wa = hn::MulSub(bx, cy, hn::Mul(by, cx)), wb = hn::MulSub(cx, ay, hn::Mul(cy, ax)),
-                 wc = hn::MulSub(ax, by, hn::Mul(ay, bx));
-      const auto most = hn::Max(size.pick(a), hn::Max(size.pick(b), size.pick(c)));
-      const auto error = hn::MulAdd(most, tolerance, square);
-      const auto outside = hn::And(hn::Gt(hn::Max(wa, hn::Max(wb, wc)), error),
-                                   hn::Lt(hn::Min(wa, hn::Min(wb, wc)), hn::Neg(error)));
-      const auto az = z.pick(a), bz = z.pick(b), cz = z.pick(c);
-      const auto beyond = hn::Gt(hn::Min(az, hn::Min(bz, cz)), hn::Set(d, hit_.t + tolerance_));
-      const auto before = hn::Lt(hn::Max(az, hn::Max(bz, cz)), hn::Set(d, ray_.t_min - tolerance_));
-      const auto rejected = hn::Or(outside, hn::Or(beyond, before));
-      passed |= (mask_bits(d, rejected) ^ ((1u << hn::Lanes(d)) - 1)) << first;
-    }
-    passed &= (1u << block.count) - 1;
-    for (; passed != 0; passed &= passed - 1) {
-      const auto lane = static_cast<std::size_t>(__builtin_ctz(passed));
-      const auto corner = [&](std::size_t k) {
-        return vertices_.position(block.vertex[block.corner[k][lane]]);
-      };
-      tester_.test_one(corner(0), corner(1), corner(2), block.triangle[lane]);
-    }
+    const FourFloats lo = side(from.lo, to.lo), hi = side(from.hi, to.hi);
+    // No box of this time reaches farther.
+    const FourFloats size = abs(ray_.origin()) + max(abs(lo), abs(hi));
+    const BoxRay world(ray_.origin(), ray_.direction(),
+                       FourFloats::all(ray_.slack()) + size * FourFloats::all(0x1p-19f),
+                       std::min(0.0f, ray_.ray().t_min));
+    if (!world.enters(lo, hi, ray_.hit().t)) return;
+    ray_.prepare();
+    walk_top(world);
   }
 
  private:
-  void set_filter() {
-    std::size_t along = 0;
-    for (std::size_t k = 1; k < 3; ++k)
-      if (std::abs(direction_[k]) > std::abs(direction_[along])) along = k;
-    const std::size_t x = (along + 1) % 3, y = (along + 2) % 3;
-    const float inverse = 1 / direction_[along];
-    for (auto& row : image_) row[0] = row[1] = row[2] = 0;
-    image_[0][x] = 1;
-    image_[0][along] = -direction_[x] * inverse;
-    image_[1][y] = 1;
-    image_[1][along] = -direction_[y] * inverse;
-    image_[2][along] = inverse;
-    // Out of this range, products in float might be lost: nothing is rejected then.
-    tolerance_ = reach_ > 0x1p-40f && reach_ < 0x1p60f ? reach_ * (1.25f * 0x1p-17f)
-                                                       : std::numeric_limits<float>::infinity();
+  void walk_top(const BoxRay& world) {
+    using Tag = hn::CappedTag<float, kTopWidth>;
+    const Tag d;
+    const LaneRay<Tag> lanes(d, world);
+    const std::size_t nodes = model_.top_nodes;
+    const TopBoxes* from = model_.top_boxes + nodes * at_.key0;
+    const TopBoxes* to = model_.top_boxes + nodes * at_.key1;
+    const auto s = hn::Set(d, at_.s);
+    WaitingChild stack[kTopWidth * kMaxTopDepth];
+    std::size_t size = 0;
+    const auto open = [&](std::uint32_t node) {
+      alignas(64) float order[kTopWidth];
+      std::uint32_t entered = 0;
+      for (std::size_t first = 0; first < kTopWidth; first += hn::Lanes(d))
+        entered |= lanes.enter(d, ray_.hit().t, order + first,
+                             [&](std::uint32_t row) {
+                               const auto a = hn::Load(d, from[node].bounds[row] + first);
+                               const auto b = hn::Load(d, to[node].bounds[row] + first);
+                               return hn::Add(a, hn::Mul(hn::Sub(b, a), s));
+                             })
+                   << first;
+      const TopLinks& links = model_.top_links[node];
+      entered &= (1u << links.count) - 1;
+      const std::size_t bottom = size;
+      for (; entered != 0; entered &= entered - 1) {
+        const auto c = static_cast<std::size_t>(__builtin_ctz(entered));
+        const WaitingChild child{order[c], links.child[c]};
+        std::size_t place = size++;
+        for (; place > bottom && stack[place - 1].order < child.order; --place)
+          stack[place] = stack[place - 1];
+        stack[place] = child;
+      }
+    };
+    for (std::uint32_t i = 1; i <= model_.top_roots; ++i) open(model_.top_nodes - i);
+    while (size > 0) {
+      const WaitingChild next = stack[--size];
+      if (next.order > ray_.hit().t) continue;
+      if (!next.child.is_leaf()) {
+        open(next.child.index());
+        continue;
+      }
+      enter_cluster(next.child.index());
+      if (ray_.finished()) return;
+    }
   }
 
+  void enter_cluster(std::uint32_t c) {
+    const RayTree& tree = trees_[c];
+    const MappedRay mapped = map_into(c);
+    const FourFloats size = FourFloats::load(tree.size);
+    const BoxRay local(mapped.origin, mapped.direction,
+                       mapped.stretch * FourFloats::all(ray_.slack()) +
+                           (abs(mapped.origin) + size) * FourFloats::all(0x1p-19f),
+                       std::min(0.0f, ray_.ray().t_min));
+    RayInTree ray(local, ray_.aim(), ray_.hit());
+    walk_bvh(tree.nodes, ray, [&](std::uint32_t block) {
+      test_leaf(ray_, tree.blocks + block, vertices_);
+    });
+  }
+
+  /// The ray in a cluster's basis.
+  HWY_INLINE MappedRay map_into(std::uint32_t c) const {
+    const std::size_t clusters = model_.clusters;
+    const std::size_t a = at_.key0 * clusters + c, b = at_.key1 * clusters + c;
+    const std::uint8_t needed = at_.key0 == at_.key1 ? kRegularKey : kRegularInterval;
+    if (HWY_LIKELY((model_.map_kinds[a] & needed) != 0)) {
+      MappedRay ray = map_ray(model_.key_maps[a], model_.key_maps[b], at_.s, ray_.ray().direction,
+                              ray_.ray().origin - to_double(model_.center));
+      ray.origin = ray.origin + four_of(model_.local_centers[c]);
+      return ray;
+    }
+    return map_irregular(
+        interpolate(model_.local_from_world[a], model_.local_from_world[b], at_.s),
+        ray_.ray().direction, ray_.ray().origin);
+  }
+
+  static constexpr std::size_t kMaxTopDepth = 9;  // 16^8 clusters
+
   const RayModel& model_;
-  const WorldRay& ray_;
   const KeyInterval& at_;
-  const RayAim aim_;
-  RayHit& hit_;
-  RayTester tester_;
-  VertexSource vertices_{nullptr, nullptr, 0};
-  float origin_[3], direction_[3];
-  float reach_;
-  float image_[3][3], tolerance_;  ///< rows of the map into the image, and R
+  const RayTree* trees_ = nullptr;
+  RayAndBlocks ray_;
+  KeyVertices vertices_;
 };
 
-void TraceRay(const RayModel& model, const WorldRay& ray, const KeyInterval& at,
-              std::uint32_t segment, RayAim aim, RayHit& hit) {
-  RayBlocks(model, ray, at, aim, hit).trace(segment);
+/// The vertices of posed blocks.
+class PosedVertices {
+ public:
+  explicit PosedVertices(const PosedScene& scene) : scene_(scene) {}
+
+  template <class D>
+  HWY_INLINE Points<D> points(D d, const RayBlock& block, std::size_t first) const {
+    const PosedRayBlock& posed = of(block);
+    return {hn::Load(d, posed.x + first), hn::Load(d, posed.y + first),
+            hn::Load(d, posed.z + first)};
+  }
+  HWY_INLINE Vec3f position(const RayBlock& block, std::size_t place) const {
+    const PosedRayBlock& posed = of(block);
+    return {posed.x[place], posed.y[place], posed.z[place]};
+  }
+
+ private:
+  HWY_INLINE const PosedRayBlock& of(const RayBlock& block) const {
+    return scene_.posed[&block - scene_.blocks];
+  }
+  const PosedScene& scene_;
+};
+
+QueryHit TraceRay(const RayModel& model, const QueryRay& ray, const KeyInterval& at,
+                  std::uint32_t segment, RayAim aim) {
+  const ScaledRay scaled(ray);
+  if (!scaled.usable) return {};
+  RayHit hit = scaled.nothing_yet();
+  RayInModel(model, scaled, at, aim, hit).trace(segment);
+  return scaled.in_callers_lengths(hit);
+}
+
+QueryHit TracePosed(const PosedScene& scene, const QueryRay& ray, RayAim aim) {
+  const ScaledRay scaled(ray);
+  if (!scaled.usable) return {};
+  RayHit hit = scaled.nothing_yet();
+  RayAndBlocks traced(scaled, scene.center, scene.diagonal, aim, hit);
+  const FourFloats lo = FourFloats::load(scene.bounds.lo), hi = FourFloats::load(scene.bounds.hi);
+  const FourFloats size = abs(traced.origin()) + max(abs(lo), abs(hi));
+  const BoxRay world(traced.origin(), traced.direction(),
+                     FourFloats::all(traced.slack()) + size * FourFloats::all(0x1p-19f),
+                     std::min(0.0f, scaled.ray.t_min));
+  if (world.enters(lo, hi, hit.t)) {
+    traced.prepare();
+    const PosedVertices vertices(scene);
+    RayInTree in_tree(world, aim, hit);
+    walk_bvh(scene.nodes, in_tree,
+             [&](std::uint32_t block) { test_leaf(traced, scene.blocks + block, vertices); });
+  }
+  return scaled.in_callers_lengths(hit);
+}
+
+void PoseBlocks(std::span<const RayBlock> blocks, const VertexSource& source,
+                PosedRayBlock* posed, Aabb* boxes) {
+  const FloatTag d;
+  const auto infinity = hn::Set(d, std::numeric_limits<float>::infinity());
+  for (std::size_t b = 0; b < blocks.size(); ++b) {
+    Points<FloatTag> lo{infinity, infinity, infinity},
+        hi{hn::Neg(infinity), hn::Neg(infinity), hn::Neg(infinity)};
+    for (std::size_t first = 0; first < kBlockVertices; first += hn::Lanes(d)) {
+      const Points<FloatTag> p = pose(d, blocks[b].vertex + first, source);
+      store(d, p, posed[b].x + first, posed[b].y + first, posed[b].z + first);
+      const auto finite = hn::And(hn::Lt(hn::Abs(p.x), infinity),
+                                  hn::And(hn::Lt(hn::Abs(p.y), infinity),
+                                          hn::Lt(hn::Abs(p.z), infinity)));
+      const auto low = [&](auto v) { return hn::IfThenElse(finite, v, infinity); };
+      const auto high = [&](auto v) { return hn::IfThenElse(finite, v, hn::Neg(infinity)); };
+      lo = {hn::Min(lo.x, low(p.x)), hn::Min(lo.y, low(p.y)), hn::Min(lo.z, low(p.z))};
+      hi = {hn::Max(hi.x, high(p.x)), hn::Max(hi.y, high(p.y)), hn::Max(hi.z, high(p.z))};
+    }
+    const auto least = [&](auto v) { return hn::GetLane(hn::MinOfLanes(d, v)); };
+    const auto most = [&](auto v) { return hn::GetLane(hn::MaxOfLanes(d, v)); };
+    boxes[b] = {{least(lo.x), least(lo.y), least(lo.z)}, {most(hi.x), most(hi.y), most(hi.z)}};
+    if (boxes[b].empty()) boxes[b] = {{0, 0, 0}, {0, 0, 0}};
+  }
 }
 
 void TestBlocks(const WorldRay& ray, std::span<const TriangleBlock> blocks,
@@ -287,7 +254,7 @@ void TestBlocks(const WorldRay& ray, std::span<const TriangleBlock> blocks,
 }
 
 }  // namespace rays
-using rays::TestBlocks, rays::TraceRay;
+using rays::PoseBlocks, rays::TestBlocks, rays::TracePosed, rays::TraceRay;
 }  // namespace HWY_NAMESPACE
 }  // namespace mdk
 HWY_AFTER_NAMESPACE();
@@ -295,39 +262,23 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace mdk {
 
-HWY_EXPORT(TraceRay);
+HWY_EXPORT(PoseBlocks);
 HWY_EXPORT(TestBlocks);
+HWY_EXPORT(TracePosed);
+HWY_EXPORT(TraceRay);
 
-BoxRay make_box_ray(const WorldRay& world, const Affine3d& local_from_world, const Aabb& bounds,
-                    double world_slack) {
-  const Vec3d local_origin = local_from_world.point(world.origin);
-  const Vec3d local_direction = local_from_world.vector(world.direction);
-  const double longest = std::max(
-      {std::abs(local_direction.x), std::abs(local_direction.y), std::abs(local_direction.z)});
-  // A component so small moves the ray by less than the slack on its way to anything; kept from
-  // zero, its inverse is finite and no product is without a value.
-  const double shortest = std::max(longest * 0x1p-40, 1e-30);
-  BoxRay ray;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const double* row = local_from_world.m[k];
-    const double stretch = std::abs(row[0]) + std::abs(row[1]) + std::abs(row[2]);
-    const double size =
-        std::abs(local_origin[k]) + std::max(std::abs(static_cast<double>(bounds.lo[k])),
-                                             std::abs(static_cast<double>(bounds.hi[k])));
-    const double slack = stretch * world_slack + size * 0x1p-19;
-    ray.origin_for_low[k] = static_cast<float>(local_origin[k] + slack);
-    ray.origin_for_high[k] = static_cast<float>(local_origin[k] - slack);
-    const double component = local_direction[k];
-    ray.inverse[k] = static_cast<float>(
-        1 / (std::abs(component) < shortest ? std::copysign(shortest, component) : component));
-  }
-  ray.t_begin = std::min(0.0f, world.t_min);
-  return ray;
+QueryHit trace_ray(const RayModel& model, const QueryRay& ray, const KeyInterval& at,
+                   std::uint32_t segment, RayAim aim) {
+  return HWY_DYNAMIC_DISPATCH(TraceRay)(model, ray, at, segment, aim);
 }
 
-void trace_ray(const RayModel& model, const WorldRay& ray, const KeyInterval& at,
-               std::uint32_t segment, RayAim aim, RayHit& hit) {
-  HWY_DYNAMIC_DISPATCH(TraceRay)(model, ray, at, segment, aim, hit);
+QueryHit trace_posed(const PosedScene& scene, const QueryRay& ray, RayAim aim) {
+  return HWY_DYNAMIC_DISPATCH(TracePosed)(scene, ray, aim);
+}
+
+void pose_blocks(std::span<const RayBlock> blocks, const VertexSource& source,
+                 PosedRayBlock* posed, Aabb* boxes) {
+  HWY_DYNAMIC_DISPATCH(PoseBlocks)(blocks, source, posed, boxes);
 }
 
 void test_blocks(const WorldRay& ray, std::span<const TriangleBlock> blocks,

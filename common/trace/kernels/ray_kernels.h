@@ -12,7 +12,7 @@
 #include "common/structures/wide_bvh.h"
 #include "common/trace/hit_buffer.h"
 #include "common/trace/kernels/triangle_block.h"
-#include "mdk/model.h"
+#include "mdk/ray_query.h"
 
 namespace mdk {
 
@@ -22,19 +22,6 @@ struct WorldRay {
   Vec3d origin, direction;  ///< the direction's largest component is in [1, 2)
   float t_min = 0;          ///< hits lie past it
 };
-
-/// A ray against boxes of one basis. Each plane is moved outward by a slack, which is why there are
-/// two origins: one for low sides and one for high sides.
-struct BoxRay {
-  float origin_for_low[3], origin_for_high[3];
-  float inverse[3];  ///< of the direction, finite
-  float t_begin;     ///< what ends before it is not entered
-};
-
-/// The ray in a basis, for boxes inside `bounds` (of that basis). `world_slack`: what boxes must
-/// give way by in the world, for the triangle test's sake.
-BoxRay make_box_ray(const WorldRay& ray, const Affine3d& local_from_world, const Aabb& bounds,
-                    double world_slack);
 
 enum class RayAim {
   kClosest,  ///< the closest hit, ties to the lower triangle
@@ -76,7 +63,7 @@ static_assert(sizeof(RayBlock) == 192);
 struct RayTree {
   std::span<const WideBvhNode> nodes;
   const RayBlock* blocks;
-  Aabb bounds;  ///< of all, in the cluster's basis
+  float size[4];  ///< the largest |x|, |y|, |z| of all boxes, in the cluster's basis
 };
 
 /// Sixteen boxes at a key, side by side: rows low x, high x, low y, high y, low z, high z.
@@ -98,12 +85,17 @@ struct KeyMap {
 /// rounding them to float changes no more than RayModel::world_slack allows for.
 inline constexpr std::uint8_t kRegularKey = 1, kRegularInterval = 2;
 
+/// The model at a key.
+struct alignas(32) KeyBox {
+  float lo[4], hi[4];
+};
+
 /// All that rays go through. F keys, K clusters, S segments, N nodes over clusters.
 struct RayModel {
   Vec3f center;    ///< of the model's bounds
   float diagonal;  ///< theirs
   std::uint32_t clusters, top_nodes, top_roots;
-  const Aabb* key_boxes;             ///< F
+  const KeyBox* key_boxes;           ///< F
   const TopBoxes* top_boxes;         ///< F * N, key-major, the roots last
   const TopLinks* top_links;         ///< N
   const Affine3f* local_from_world;  ///< F * K, key-major
@@ -114,11 +106,31 @@ struct RayModel {
   const KeyPoses* poses;
 };
 
-/// Brings `hit` up to date with what the ray meets at a time, which lies in `segment`.
-void trace_ray(const RayModel& model, const WorldRay& ray, const KeyInterval& at,
-               std::uint32_t segment, RayAim aim, RayHit& hit);
+/// What the ray meets at a time, which lies in `segment`.
+QueryHit trace_ray(const RayModel& model, const QueryRay& ray, const KeyInterval& at,
+                   std::uint32_t segment, RayAim aim);
 
-/// The same for blocks without a structure: every triangle is tested in double.
+/// Where the vertices of a block are at one time.
+struct alignas(64) PosedRayBlock {
+  float x[kBlockVertices], y[kBlockVertices], z[kBlockVertices];
+};
+/// `posed` and `boxes` have one for each block; behind the source's last vertices, 4 bytes may be
+/// read. A box holds the vertices that are finite; a triangle with another cannot be hit.
+void pose_blocks(std::span<const RayBlock> blocks, const VertexSource& source,
+                 PosedRayBlock* posed, Aabb* boxes);
+
+/// A model at one time, with one hierarchy in the world, whose leaves are numbers of blocks.
+struct PosedScene {
+  Vec3f center;    ///< of its bounds
+  float diagonal;  ///< theirs
+  KeyBox bounds;
+  std::span<const WideBvhNode> nodes;
+  const RayBlock* blocks;
+  const PosedRayBlock* posed;
+};
+QueryHit trace_posed(const PosedScene& scene, const QueryRay& ray, RayAim aim);
+
+/// What triangles without a structure bring `hit` to: every triangle is tested in double.
 void test_blocks(const WorldRay& ray, std::span<const TriangleBlock> blocks,
                  const VertexSource& vertices, RayHit& hit);
 
