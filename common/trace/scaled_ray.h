@@ -42,6 +42,8 @@ struct ScaledRay {
     hit.t = t_max_;
     return hit;
   }
+  /// A t of the caller's in our lengths.
+  float scaled(float t) const { return static_cast<float>(t * t_scale_); }
   QueryHit in_callers_lengths(const RayHit& hit) const {
     if (hit.triangle == kNoHit) return {};
     return {static_cast<float>(hit.t * inverse_), hit.triangle, hit.bary1, hit.bary2};
@@ -53,7 +55,6 @@ struct ScaledRay {
   static bool is_finite(const Vec3f& v) {
     return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
   }
-  float scaled(float t) const { return static_cast<float>(t * t_scale_); }
 
   double t_scale_ = 1, inverse_ = 1;  ///< from the caller's t to ours, and back
   float t_max_ = 0;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <optional>
 #include <string>
 
 #include "common/base/error.h"
@@ -11,7 +12,7 @@
 #include "common/base/stopwatch.h"
 #include "common/motion/model_handle.h"
 #include "common/motion/posed_mesh.h"
-#include "common/trace/instance_tree.h"
+#include "common/trace/instance_trees.h"
 
 namespace mdk {
 namespace {
@@ -112,7 +113,7 @@ struct SceneRenderer::State {
   const SceneOptions options;
   std::vector<std::unique_ptr<CrowdModel>> models;
   SceneShader shader;
-  std::unique_ptr<InstanceTree> tree;
+  std::optional<InstanceTrees> trees;
   tbb::enumerable_thread_specific<Worker> workers;
   std::vector<std::uint32_t> order;
   std::uint32_t order_width = 0, order_height = 0;
@@ -136,15 +137,13 @@ struct SceneRenderer::State {
     return worker;
   }
 
-  void update(double time) {
+  void update() {
     Stopwatch watch;
     if (options.technique == SceneTechnique::kBruteForce) {
       pose_all();
-    } else if (tree == nullptr) {
-      tree = std::make_unique<InstanceTree>(stage, time);
+    } else if (!trees) {
+      trees.emplace(stage);
       stats.prebuild_ms += watch.lap() * 1e3;
-    } else {
-      tree->update(time);
     }
     stats.update_ms += watch.lap() * 1e3;
   }
@@ -175,21 +174,24 @@ struct SceneRenderer::State {
 
   CrowdView view() const {
     CrowdView v{};
-    v.nodes = tree->nodes();
-    v.instance_of_leaf = tree->instance_of_leaf();
-    v.instances = stage.scene().instances.data();
-    v.pixel_from_world = frame.pixel_from_world;
-    v.slack = static_cast<float>(ray_slack(tree->unevenness(), 1));
-    v.columns = static_cast<float>(frame.width);
-    v.rows = static_cast<float>(frame.height);
-    const Aabb bounds = v.nodes.empty() ? Aabb{} : v.nodes[0].box();
-    v.forms = make_frustum_forms(frame.rays, Affine3d(), bounds);
-    float reach = 0;
-    if (!bounds.empty())
+    v.slack = static_cast<float>(ray_slack(trees->unevenness(), 1));
+    const auto set_tree = [&](CrowdView::Tree& tree, std::span<const WideBvhNode> nodes) {
+      tree.nodes = nodes;
+      if (nodes.empty()) return;
+      const Aabb bounds = nodes[0].box();
+      tree.forms = make_frustum_forms(frame.rays, Affine3d(), bounds);
+      float reach = 0;
       for (std::size_t axis = 0; axis < 3; ++axis)
         reach += std::max(std::abs(bounds.lo[axis] - frame.rays.origin[axis]),
                           std::abs(bounds.hi[axis] - frame.rays.origin[axis]));
-    loosen(v.forms, v.slack * reach);
+      loosen(tree.forms, v.slack * reach);
+    };
+    set_tree(v.trees[0], trees->standing());
+    set_tree(v.trees[1], trees->moving(frame.time));
+    v.instances = stage.scene().instances.data();
+    v.pixel_from_world = frame.pixel_from_world;
+    v.columns = static_cast<float>(frame.width);
+    v.rows = static_cast<float>(frame.height);
     return v;
   }
 
@@ -204,8 +206,10 @@ struct SceneRenderer::State {
              .line_share = options.line_share};
     frame.pixel_from_world = make_pixel_from_world(frame.rays);
     ++serial;
-    update(frame.time);
+    update();
     Stopwatch watch;
+    const CrowdView seen = options.technique == SceneTechnique::kFuzzy ? view() : CrowdView{};
+    stats.update_ms += watch.lap() * 1e3;
     if (order_width != request.width || order_height != request.height) {
       order = tile_order(request.width, request.height);
       order_width = request.width;
@@ -213,7 +217,6 @@ struct SceneRenderer::State {
     }
     hits.hits.resize(request.width, request.height);
     hits.instances.resize(hits.hits.tile_count());
-    const CrowdView seen = options.technique == SceneTechnique::kFuzzy ? view() : CrowdView{};
     parallel_chunks(order.size(), kTilesPerChunk, [&](std::size_t begin, std::size_t end) {
       Worker& w = worker();
       for (std::size_t i = begin; i < end; ++i) {
@@ -287,7 +290,7 @@ const SceneHits& SceneRenderer::hits() const { return state_->hits; }
 const SceneStats& SceneRenderer::stats() const { return state_->stats; }
 
 std::size_t SceneRenderer::structure_bytes() const {
-  std::size_t sum = state_->tree == nullptr ? 0 : state_->tree->bytes();
+  std::size_t sum = state_->trees ? state_->trees->bytes() : 0;
   for (const auto& model : state_->models) sum += model->structure_bytes();
   return sum;
 }

@@ -107,7 +107,8 @@ void SceneShader::shade_tile(const CrowdFrame& frame, ShadingMode mode, std::uin
   for (std::uint32_t i = 0; i < kTilePixels; ++i) {
     red[i] = green[i] = blue[i] = 0;
     const std::uint32_t number = hits.triangle[i];
-    if (number == kNoHit) continue;
+    const bool is_inside = left + i % kTileSide < frame.width && top + i / kTileSide < frame.height;
+    if (number == kNoHit || !is_inside) continue;
     if (at.number != instances.instance[i]) {
       at.number = instances.instance[i];
       at.rays = pool.enter(at.number);

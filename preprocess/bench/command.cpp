@@ -7,11 +7,13 @@
 #include "common/base/error.h"
 #include "common/base/isa.h"
 #include "common/trace/technique.h"
+#include "formats/files/file_kind.h"
 #include "formats/mdk/mdk_file.h"
 #include "preprocess/bench/comparison.h"
 #include "preprocess/bench/measurement.h"
 #include "preprocess/bench/rays.h"
 #include "preprocess/bench/report.h"
+#include "preprocess/bench/scene_rays.h"
 #include "preprocess/commands/command_line.h"
 #include "preprocess/tool/files.h"
 #include "preprocess/tool/progress_bar.h"
@@ -169,10 +171,13 @@ void measure_rays(const BenchArguments& arguments, Interrupts& interrupts) {
   if (arguments.inputs.empty() || !arguments.from.empty() || !arguments.compare.empty() ||
       !arguments.csv.empty() || !arguments.html.empty() || !arguments.markdown.empty() ||
       !arguments.quoting.empty())
-    throw Error(ErrorCode::kUsage, "--rays takes .mdk files and writes a table and --json");
+    throw Error(ErrorCode::kUsage,
+                "--rays takes .mdk and .mds files and writes a table and --json");
   const MachineLimits limits(arguments.machine);
   check_outputs(arguments);
-  for (const std::string& input : arguments.inputs) MdkFile{input};
+  const auto is_scene = [](const std::string& path) { return lower_extension(path) == ".mds"; };
+  for (const std::string& input : arguments.inputs)
+    if (!is_scene(input)) MdkFile{input};
   ProgressBar progress(std::cerr, progress_style(arguments.messages));
   const LoopCheck check = interrupts.defer();
   const double share = 1.0 / static_cast<double>(arguments.inputs.size());
@@ -180,7 +185,8 @@ void measure_rays(const BenchArguments& arguments, Interrupts& interrupts) {
   for (const std::string& input : arguments.inputs) {
     const double done = static_cast<double>(models.size()) * share;
     ProgressPart part(progress, done, done + share);
-    models.push_back(bench_rays(input, {}, part));
+    models.push_back(is_scene(input) ? bench_scene_rays(input, {}, part)
+                                     : bench_rays(input, {}, part));
   }
   print_rays(std::cout, models);
   if (!arguments.json.empty()) write_text_file(arguments.json, rays_json(models));
@@ -278,11 +284,12 @@ void add_bench_command(Command& command) {
   const auto arguments = std::make_shared<BenchArguments>();
   command.add_texts(OptionKind::kSome, "FILE", "", ".mdk files made by 'mdprep bake'.",
                     arguments->inputs);
-  command.add_flag("--rays",
-                   "Time single rays instead, at times of their own and many at one time, on one\n"
-                   "thread and on all; beside Embree's, where it was built in. 20,000 rays of each\n"
-                   "kind, medians of 11 rounds. Takes --json (mdk-rays/1), --threads and --isa.",
-                   arguments->rays);
+  command.add_flag(
+      "--rays",
+      "Time single rays instead, at times of their own and many at one time, on one\n"
+      "thread and on all; beside Embree's, where it was built in. 20,000 rays of each\n"
+      "kind, medians of 11 rounds. Takes --json (mdk-rays/1), --threads and --isa.",
+      arguments->rays);
   add_measuring_options(command, arguments->config);
   add_view_options(command, arguments->view);
   add_result_options(command, *arguments);

@@ -76,10 +76,10 @@ RayList spin(const ModelView& model, std::uint32_t count) {
     const double share = static_cast<double>(i / kBeams * kBeams) / count;
     const double turn = 2 * std::numbers::pi * kTurns * share;
     const double rise = (static_cast<double>(i % kBeams) / (kBeams - 1) - 0.6) * 0.6;
-    list.rays.push_back({eye,
-                         {static_cast<float>(std::cos(turn) * std::cos(rise)),
-                          static_cast<float>(std::sin(rise)),
-                          static_cast<float>(std::sin(turn) * std::cos(rise))}});
+    list.rays.push_back(
+        {eye,
+         {static_cast<float>(std::cos(turn) * std::cos(rise)), static_cast<float>(std::sin(rise)),
+          static_cast<float>(std::sin(turn) * std::cos(rise))}});
     list.times.push_back(time_at(intervals, share));
   }
   return list;
@@ -99,7 +99,8 @@ RayList scan(const ModelView& model, std::uint32_t count) {
     const KeyInterval at = time_at(intervals, share);
     const Aabb box = box_at(model, at);
     const Vec3f along = box.center() - eye;
-    const Vec3f right = normalized(cross(along, Vec3f{0, 1, 0})), up = normalized(cross(right, along));
+    const Vec3f right = normalized(cross(along, Vec3f{0, 1, 0})),
+                up = normalized(cross(right, along));
     Vec3f half;  // of the box, seen along `right` and `up`
     for (std::size_t axis = 0; axis < 3; ++axis) {
       half.x += std::abs(right[axis]) * box.extent()[axis] / 2;
@@ -222,7 +223,8 @@ void judge(const ModelView& model, const RayRun& run, const std::vector<QueryHit
   }
 }
 
-std::uint32_t count_different(const std::vector<QueryHit>& ours, const std::vector<QueryHit>& peer) {
+std::uint32_t count_different(const std::vector<QueryHit>& ours,
+                              const std::vector<QueryHit>& peer) {
   std::uint32_t count = 0;
   for (std::size_t i = 0; i < ours.size(); ++i) {
     const bool both = ours[i].is_hit() && peer[i].is_hit();
@@ -275,8 +277,8 @@ void run_rows(const ModelView& model, const RayQuery& query, double build_ms, co
     for (const QueryHit& hit : hits) row.hits += hit.is_hit() ? 1.0 / config.rays : 0;
     row.hits = rounded(row.hits);
     if (first.empty()) {
-      judge(model, run, hits, std::min(config.judged, kJudgedTriangles / model.triangle_count() + 1),
-            row);
+      judge(model, run, hits,
+            std::min(config.judged, kJudgedTriangles / model.triangle_count() + 1), row);
       first = hits;
     } else {
       for (std::size_t i = 0; i < hits.size(); ++i) row.mismatches += !is_same(hits[i], first[i]);
@@ -310,8 +312,14 @@ void run_rows(const ModelView& model, const RayQuery& query, double build_ms, co
 RayBench bench_rays(const std::string& path, const RayBenchConfig& config, ProgressSink& progress) {
   const Model loaded = Model::load(path);
   const ModelView& model = ModelHandle::view(loaded);
-  RayBench bench{path, std::string(isa_in_use()), {}, model.triangle_count(), model.key_count(),
-                 config.rays, {}};
+  RayBench bench{path,
+                 std::string(isa_in_use()),
+                 {},
+                 model.triangle_count(),
+                 model.key_count(),
+                 config.rays,
+                 {},
+                 0};
   const Stopwatch watch;
   const RayQuery query(loaded);
   const double build_ms = watch.milliseconds();
@@ -320,20 +328,18 @@ RayBench bench_rays(const std::string& path, const RayBenchConfig& config, Progr
   const RayList spins = spin(model, config.rays), scans = scan(model, config.rays),
                 lines = random_rays(model, config.rays, {}),
                 still = random_rays(model, config.rays, moment);
-  const RayRun runs[] = {{"spin", spins, RayAim::kClosest, false},
-                         {"scan", scans, RayAim::kClosest, false},
-                         {"random", lines, RayAim::kClosest, false},
-                         {"random-any", lines, RayAim::kAny, false},
-                         {"moment", still, RayAim::kClosest, true},
-                         {"moment-any", still, RayAim::kAny, true}};
+  const RayRun runs[] = {
+      {"spin", spins, RayAim::kClosest, false},   {"scan", scans, RayAim::kClosest, false},
+      {"random", lines, RayAim::kClosest, false}, {"random-any", lines, RayAim::kAny, false},
+      {"moment", still, RayAim::kClosest, true},  {"moment-any", still, RayAim::kAny, true}};
   std::unique_ptr<Peers> peers;
   for (std::size_t i = 0; i < std::size(runs); ++i) {
     progress.report("time", static_cast<double>(i) / static_cast<double>(std::size(runs)));
     check_loop();
     if (i == 0 || runs[i].at_one_time != runs[i - 1].at_one_time) {
       peers.reset();
-      peers = std::make_unique<Peers>(model, runs[i].at_one_time ? std::optional(moment)
-                                                                 : std::nullopt);
+      peers = std::make_unique<Peers>(model,
+                                      runs[i].at_one_time ? std::optional(moment) : std::nullopt);
       if (peers->robust != nullptr) bench.peer = "embree-3";
     }
     run_rows(model, query, build_ms, *peers, runs[i], config, bench);

@@ -19,8 +19,8 @@ struct RayBenchRow {
   double hits = 0;                                ///< share of the rays that hit
   std::size_t ours_bytes = 0, peer_bytes = 0;
   double ours_build_ms = 0, peer_build_ms = 0;
-  std::uint32_t judged = 0;      ///< rays compared with brute force
-  std::uint32_t mismatches = 0;  ///< of those, and between numbers of threads
+  std::uint32_t judged = 0;        ///< rays compared with brute force
+  std::uint32_t mismatches = 0;    ///< of those, and between numbers of threads
   std::uint32_t peer_differs = 0;  ///< rays for which the peer sees another thing or depth
 
   /// How many times the peer's time is ours.
@@ -33,6 +33,7 @@ struct RayBench {
   std::string peer;  ///< empty without
   std::uint32_t triangles = 0, keys = 0, rays = 0;
   std::vector<RayBenchRow> rows;
+  std::uint32_t instances = 0;  ///< of a scene
 };
 
 struct RayBenchConfig {

@@ -45,12 +45,14 @@ std::string rays_json(const std::vector<RayBench>& models) {
       if (!model.peer.empty()) item["peer_differs"] = row.peer_differs;
       rows.push_back(std::move(item));
     }
-    list.push_back({{"file", std::filesystem::path(model.file).filename().string()},
-                    {"isa", model.isa},
-                    {"triangles", model.triangles},
-                    {"keys", model.keys},
-                    {"rays", model.rays},
-                    {"rows", std::move(rows)}});
+    Json item{{"file", std::filesystem::path(model.file).filename().string()},
+              {"isa", model.isa},
+              {"triangles", model.triangles},
+              {"keys", model.keys},
+              {"rays", model.rays}};
+    if (model.instances > 0) item["instances"] = model.instances;
+    item["rows"] = std::move(rows);
+    list.push_back(std::move(item));
   }
   return Json{{"schema", "mdk-rays/1"}, {"models", std::move(list)}}.dump(1) + "\n";
 }
@@ -62,9 +64,9 @@ void print_rays(std::ostream& out, const std::vector<RayBench>& models) {
   for (const RayBench& model : models)
     for (const RayBenchRow& row : model.rows)
       table.add_row({std::filesystem::path(model.file).stem().string(), row.row,
-                     std::to_string(row.threads), digits(100 * row.hits, 1),
-                     digits(row.ours_ns, 1), digits(row.peer_ns, 1), digits(row.plain_ns, 1),
-                     digits(row.ratio(), 2), mebibytes(row.ours_bytes), mebibytes(row.peer_bytes),
+                     std::to_string(row.threads), digits(100 * row.hits, 1), digits(row.ours_ns, 1),
+                     digits(row.peer_ns, 1), digits(row.plain_ns, 1), digits(row.ratio(), 2),
+                     mebibytes(row.ours_bytes), mebibytes(row.peer_bytes),
                      digits(row.ours_build_ms, 1), digits(row.peer_build_ms, 1),
                      std::to_string(row.mismatches)});
   table.print(out);

@@ -407,8 +407,10 @@ class CrowdTile {
         top_(static_cast<float>(tile.y)) {}
 
   void trace() {
-    TileInScene rays(*this);
-    walk_bvh(view_.nodes, rays, [&](std::uint32_t leaf) { enter(view_.instance_of_leaf[leaf]); });
+    for (const CrowdView::Tree& tree : view_.trees) {
+      TileInScene rays(*this, tree.forms);
+      walk_bvh(tree.nodes, rays, [&](std::uint32_t number) { enter(number); });
+    }
   }
   CrowdImage& image() { return image_; }
 
@@ -422,7 +424,7 @@ class CrowdTile {
   /// pixel that is not hidden are entered.
   class TileInScene {
    public:
-    explicit TileInScene(CrowdTile& tile) : tile_(tile), rays_(tile.view_.forms, tile) {}
+    TileInScene(CrowdTile& tile, const FrustumForms& forms) : tile_(tile), rays_(forms, tile) {}
     HWY_INLINE std::uint32_t enter(const WideBvhNode& node, float (&depth)[kBvhWidth]) const {
       std::uint32_t entered = rays_.enter(node, depth), leaves = 0;
       for (std::uint32_t rest = entered; rest != 0; rest &= rest - 1) {
@@ -431,20 +433,14 @@ class CrowdTile {
       }
       if (leaves == 0) return entered;
       entered &= ~leaves | tile_.holding_pixels(node);
-      for (std::uint32_t rest = entered & leaves; rest != 0; rest &= rest - 1) {
-        const std::uint32_t leaf = node.child[__builtin_ctz(rest)].index();
-        fetch(tile_.view_, leaf);
-      }
+      for (std::uint32_t rest = entered & leaves; rest != 0; rest &= rest - 1)
+        hwy::Prefetch(tile_.view_.instances + node.child[__builtin_ctz(rest)].index());
       return entered;
     }
     bool is_past(float depth) const { return rays_.is_past(depth); }
     static constexpr bool finished() { return false; }
 
    private:
-    static void fetch(const CrowdView& view, std::uint32_t leaf) {
-      hwy::Prefetch(static_cast<const std::uint8_t*>(view.instances) +
-                    std::size_t{view.instance_of_leaf[leaf]} * 64);
-    }
     CrowdTile& tile_;
     TileInTree<CrowdTile> rays_;
   };

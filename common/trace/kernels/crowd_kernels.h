@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <span>
 
+#include "common/scene/scene.h"
 #include "common/trace/kernels/ray_kernels.h"
 #include "common/trace/kernels/tile_kernels.h"
 
@@ -69,12 +70,15 @@ class InstanceSource {
   virtual const FrustumForms& cluster_forms(std::uint32_t cluster) = 0;
 };
 
-/// The hierarchy over the instances' boxes; leaf i is instance `instance_of_leaf[i]`.
+/// Hierarchies over boxes of instances: those that stand still, and those that move. A leaf is the
+/// instance of its number.
 struct CrowdView {
-  std::span<const WideBvhNode> nodes;
-  const std::uint32_t* instance_of_leaf;
-  const void* instances;  ///< what entering one reads, 64 bytes each: fetched early
-  FrustumForms forms;
+  struct Tree {
+    std::span<const WideBvhNode> nodes;
+    FrustumForms forms;
+  };
+  Tree trees[2];
+  const SceneInstance* instances;  ///< what entering one reads: fetched early
   PixelFromWorld pixel_from_world;
   float slack;          ///< what a box must give way by, as a share of its distance
   float columns, rows;  ///< of the picture
