@@ -89,14 +89,19 @@ std::uint64_t count_mismatches(const SceneHits& a, const SceneHits& b) {
 struct SceneRenderer::State {
   /// What a thread keeps between tiles.
   struct Worker {
+    explicit Worker(InstancePool p)
+        : pool(std::move(p)), scratch(std::make_unique<CrowdScratch>()) {}
+
     InstancePool pool;
+    std::unique_ptr<CrowdScratch> scratch;
     CrowdCounters counters;
     std::uint64_t serial = 0;
+    double trace_seconds = 0, shade_seconds = 0;
   };
 
   State(const Stage& s, const SceneOptions& o)
       : stage(s), options(o), models(make_models(s)), shader(s, models), workers([this] {
-          return Worker{InstancePool(models, pool_bytes()), {}, 0};
+          return Worker(InstancePool(models, pool_bytes()));
         }) {}
 
   static std::vector<std::unique_ptr<CrowdModel>> make_models(const Stage& stage) {
@@ -132,6 +137,7 @@ struct SceneRenderer::State {
     if (worker.serial != serial) {
       worker.serial = serial;
       worker.counters = {};
+      worker.trace_seconds = worker.shade_seconds = 0;
       worker.pool.begin_frame(frame);
     }
     return worker;
@@ -195,7 +201,7 @@ struct SceneRenderer::State {
     return v;
   }
 
-  void trace(const SceneRequest& request, std::uint32_t sample) {
+  void trace(const SceneRequest& request, std::uint32_t sample, bool shades) {
     frame = {.stage = &stage,
              .models = models,
              .time = request.shutter.empty() ? request.time : request.shutter[sample],
@@ -217,20 +223,28 @@ struct SceneRenderer::State {
     }
     hits.hits.resize(request.width, request.height);
     hits.instances.resize(hits.hits.tile_count());
+    // A tile is shaded as soon as it is traced: what was worked out of its instances is at hand.
     parallel_chunks(order.size(), kTilesPerChunk, [&](std::size_t begin, std::size_t end) {
       Worker& w = worker();
+      Stopwatch of_tile;
       for (std::size_t i = begin; i < end; ++i) {
-        const std::uint32_t t = order[i];
-        const TileRays tile{&frame.rays, &frame.pixel_from_world, hits.hits.tile_left(t),
-                            hits.hits.tile_top(t)};
-        hits.hits.set_hit(
-            t, options.technique == SceneTechnique::kFuzzy
-                   ? trace_crowd_tile(tile, seen, w.pool, hits.hits.tile(t), hits.instances[t],
-                                      request.counting ? &w.counters : nullptr)
-                   : trace_crowd_brute(tile, brute, hits.hits.tile(t), hits.instances[t]));
+        trace_tile(order[i], seen, w, request.counting ? &w.counters : nullptr);
+        w.trace_seconds += of_tile.lap();
+        if (!shades) continue;
+        shade_tile(order[i], w, request.shading);
+        w.shade_seconds += of_tile.lap();
       }
     });
-    stats.trace_ms += watch.lap() * 1e3;
+    const double both = watch.lap() * 1e3;
+    double traced = 0, shaded = 0;
+    for (const Worker& w : workers)
+      if (w.serial == serial) {
+        traced += w.trace_seconds;
+        shaded += w.shade_seconds;
+      }
+    const double share = shades && traced + shaded > 0 ? shaded / (traced + shaded) : 0;
+    stats.trace_ms += both * (1 - share);
+    stats.shade_ms += both * share;
     for (const Worker& w : workers)
       if (w.serial == serial) {
         stats.counters += w.counters;
@@ -240,22 +254,22 @@ struct SceneRenderer::State {
     stats.hits += count_hits(hits.hits);
   }
 
-  void shade(const SceneRequest& request) {
-    const Stopwatch watch;
-    parallel_chunks(order.size(), kTilesPerChunk, [&](std::size_t begin, std::size_t end) {
-      Worker& w = worker();
-      for (std::size_t i = begin; i < end; ++i) {
-        const std::uint32_t t = order[i];
-        const std::uint32_t left = hits.hits.tile_left(t), top = hits.hits.tile_top(t);
-        if (hits.hits.is_hit(t)) {
-          shader.shade_tile(frame, request.shading, left, top, hits.hits.tile(t), hits.instances[t],
-                            w.pool, film);
-        } else {
-          film.put_background(left, top);
-        }
-      }
-    });
-    stats.shade_ms += watch.seconds() * 1e3;
+  void trace_tile(std::uint32_t t, const CrowdView& seen, Worker& w, CrowdCounters* counters) {
+    const TileRays tile{&frame.rays, &frame.pixel_from_world, hits.hits.tile_left(t),
+                        hits.hits.tile_top(t)};
+    TileHits& to = hits.hits.tile(t);
+    hits.hits.set_hit(
+        t, options.technique == SceneTechnique::kFuzzy
+               ? trace_crowd_tile(tile, seen, w.pool, *w.scratch, to, hits.instances[t], counters)
+               : trace_crowd_brute(tile, brute, to, hits.instances[t]));
+  }
+  void shade_tile(std::uint32_t t, Worker& w, ShadingMode mode) {
+    const std::uint32_t left = hits.hits.tile_left(t), top = hits.hits.tile_top(t);
+    if (hits.hits.is_hit(t)) {
+      shader.shade_tile(frame, mode, left, top, hits.hits.tile(t), hits.instances[t], w.pool, film);
+    } else {
+      film.put_background(left, top);
+    }
   }
 };
 
@@ -266,7 +280,7 @@ SceneRenderer::~SceneRenderer() = default;
 const SceneStats& SceneRenderer::trace(const SceneRequest& request) {
   check_request(request);
   state_->stats = {};
-  state_->trace(request, 0);
+  state_->trace(request, 0, false);
   return state_->stats;
 }
 
@@ -276,8 +290,7 @@ const SceneStats& SceneRenderer::render(const SceneRequest& request) {
   s.stats = {};
   s.film.begin(request.width, request.height, request.samples);
   for (std::uint32_t i = 0; i < request.samples; ++i) {
-    s.trace(request, i);
-    s.shade(request);
+    s.trace(request, i, true);
   }
   const Stopwatch watch;
   s.film.develop();

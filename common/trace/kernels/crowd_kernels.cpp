@@ -240,10 +240,11 @@ HWY_INLINE FourFloats four_floats(const Vec3d& v) {
 template <class Counter>
 class PixelLine {
  public:
-  PixelLine(const InstanceRays& instance, CrowdImage& image, std::uint32_t x, std::uint32_t y,
-            float place_x, float place_y, const Counter& counter)
+  PixelLine(const InstanceRays& instance, CrowdImage& image, CrowdScratch& scratch, std::uint32_t x,
+            std::uint32_t y, float place_x, float place_y, const Counter& counter)
       : instance_(instance),
         image_(image),
+        scratch_(scratch),
         column_(x),
         row_(y),
         x_(place_x),
@@ -318,21 +319,38 @@ class PixelLine {
   void test(const RayBlock& block) {
     const FloatTag d;
     counter_.candidates(block.count);
-    const BlockCorners corners(block, instance_.pixel_from_model, instance_.vertices);
+    const ProjectedBlock& p = projected(block);
+    if (p.live == 0) return;
     const auto x = hn::Set(d, x_), y = hn::Set(d, y_), best = hn::Set(d, best_);
-    Projector projector(block.count, corners, projected_);
-    projector.run([&](std::size_t i) {
-      const auto in_x = hn::And(hn::Le(hn::Load(d, projected_.first_x + i), x),
-                                hn::Ge(hn::Load(d, projected_.last_x + i), x));
-      const auto in_y = hn::And(hn::Le(hn::Load(d, projected_.first_y + i), y),
-                                hn::Ge(hn::Load(d, projected_.last_y + i), y));
-      return hn::And(hn::And(in_x, in_y),
-                     hn::Ge(hn::Load(d, projected_.max_inverse_depth + i), best));
-    });
-    if (projected_.live == 0) return;
-    counter_.tests(static_cast<std::uint64_t>(__builtin_popcount(projected_.live)));
-    image_.test_pixel(TrianglesFromOne(block.triangle).number, projected_, projected_.live, x_, y_);
+    std::uint32_t mask = 0;
+    for (std::size_t i = 0; i < kBlockTriangles; i += hn::Lanes(d)) {
+      const auto in_x =
+          hn::And(hn::Le(hn::Load(d, p.first_x + i), x), hn::Ge(hn::Load(d, p.last_x + i), x));
+      const auto in_y =
+          hn::And(hn::Le(hn::Load(d, p.first_y + i), y), hn::Ge(hn::Load(d, p.last_y + i), y));
+      const auto seen = hn::Ge(hn::Load(d, p.max_inverse_depth + i), best);
+      mask |= mask_bits(d, hn::And(hn::And(in_x, in_y), seen)) << i;
+    }
+    mask &= p.live;
+    if (mask == 0) return;
+    counter_.tests(static_cast<std::uint64_t>(__builtin_popcount(mask)));
+    image_.test_pixel(TrianglesFromOne(block.triangle).number, p, mask, x_, y_);
     set_limit();
+  }
+
+  /// A block is seen by the lines of several pixels, one after another.
+  const ProjectedBlock& projected(const RayBlock& block) {
+    const std::size_t place =
+        reinterpret_cast<std::uintptr_t>(&block) / sizeof(RayBlock) % CrowdScratch::kBlocks;
+    CrowdScratch::Entry& entry = scratch_.entries[place];
+    ProjectedBlock& p = scratch_.projected[place];
+    if (entry.block == &block && entry.entered == scratch_.entered) return p;
+    entry = {&block, scratch_.entered};
+    const FloatTag d;
+    const BlockCorners corners(block, instance_.pixel_from_model, instance_.vertices);
+    Projector projector(block.count, corners, p);
+    projector.run([&](std::size_t) { return hn::Eq(hn::Zero(d), hn::Zero(d)); });
+    return p;
   }
 
   void set_limit() {
@@ -342,12 +360,12 @@ class PixelLine {
 
   const InstanceRays& instance_;
   CrowdImage& image_;
+  CrowdScratch& scratch_;
   std::uint32_t column_, row_;
   float x_, y_;
   float best_;
   RayHit hit_;  ///< of it only t is in use: how far boxes matter
   Counter counter_;
-  ProjectedBlock projected_;
 };
 
 /// A tile, or the part of it that an instance may be seen in, against the instance's blocks.
@@ -396,10 +414,11 @@ template <class Counter>
 class CrowdTile {
  public:
   CrowdTile(const TileRays& tile, const CrowdView& view, InstanceSource& source,
-            const Counter& counter, CrowdCounters* counters)
+            CrowdScratch& scratch, const Counter& counter, CrowdCounters* counters)
       : tile_(tile),
         view_(view),
         source_(source),
+        scratch_(scratch),
         counter_(counter),
         counters_(counters),
         image_(tile),
@@ -529,6 +548,7 @@ class CrowdTile {
     if (image_.hides(squares, screen.nearest)) return;
     if (counters_ != nullptr) ++counters_->instances_entered;
     image_.begin_instance(*instance, squares);
+    ++scratch_.entered;
     if (instance->has_lines) {
       trace_lines(*instance, pixels);
     } else {
@@ -546,7 +566,8 @@ class CrowdTile {
         if (image_.inverse_depth(column, row) > nearest_inverse) continue;
         if (counters_ != nullptr) ++counters_->lines;
         const float place_x = left + static_cast<float>(x), place_y = top + static_cast<float>(y);
-        PixelLine<Counter>(instance, image_, column, row, place_x, place_y, counter_).trace();
+        PixelLine<Counter>(instance, image_, scratch_, column, row, place_x, place_y, counter_)
+            .trace();
       }
   }
 
@@ -590,6 +611,7 @@ class CrowdTile {
   const TileRays& tile_;
   const CrowdView& view_;
   InstanceSource& source_;
+  CrowdScratch& scratch_;
   Counter counter_;
   CrowdCounters* counters_;
   CrowdImage image_;
@@ -597,9 +619,10 @@ class CrowdTile {
 };
 
 bool TraceCrowdTile(const TileRays& tile, const CrowdView& view, InstanceSource& source,
-                    TileHits& hits, TileInstances& instances, CrowdCounters* counters) {
+                    CrowdScratch& scratch, TileHits& hits, TileInstances& instances,
+                    CrowdCounters* counters) {
   const auto with = [&](const auto& counter) {
-    CrowdTile traced(tile, view, source, counter, counters);
+    CrowdTile traced(tile, view, source, scratch, counter, counters);
     traced.trace();
     if (traced.image().empty()) return false;
     traced.image().store(hits, instances);
@@ -646,8 +669,10 @@ HWY_EXPORT(TraceCrowdTile);
 HWY_EXPORT(TraceCrowdBrute);
 
 bool trace_crowd_tile(const TileRays& tile, const CrowdView& view, InstanceSource& source,
-                      TileHits& hits, TileInstances& instances, CrowdCounters* counters) {
-  return HWY_DYNAMIC_DISPATCH(TraceCrowdTile)(tile, view, source, hits, instances, counters);
+                      CrowdScratch& scratch, TileHits& hits, TileInstances& instances,
+                      CrowdCounters* counters) {
+  return HWY_DYNAMIC_DISPATCH(TraceCrowdTile)(tile, view, source, scratch, hits, instances,
+                                              counters);
 }
 
 bool trace_crowd_brute(const TileRays& tile, std::span<const BruteInstance> all, TileHits& hits,

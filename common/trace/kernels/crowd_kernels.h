@@ -84,11 +84,24 @@ struct CrowdView {
   float columns, rows;  ///< of the picture
 };
 
+/// Per-thread memory of the kernels: blocks as lines of the instance at hand have last seen them.
+struct CrowdScratch {
+  static constexpr std::size_t kBlocks = 128;
+  struct Entry {
+    const RayBlock* block = nullptr;
+    std::uint64_t entered = 0;  ///< which entering of an instance it is of
+  };
+  Entry entries[kBlocks];
+  std::uint64_t entered = 0;
+  ProjectedBlock projected[kBlocks];
+};
+
 /// Closest hits: the largest inverse depth, ties to the lower instance, then to the lower triangle.
 /// Returns whether a ray hits; hits and instances are written whole then, and else left alone.
 /// `counters` may be null.
 bool trace_crowd_tile(const TileRays& tile, const CrowdView& view, InstanceSource& source,
-                      TileHits& hits, TileInstances& instances, CrowdCounters* counters);
+                      CrowdScratch& scratch, TileHits& hits, TileInstances& instances,
+                      CrowdCounters* counters);
 
 /// An instance with all its triangles and their posed corners.
 struct BruteInstance {
