@@ -16,14 +16,20 @@ const CrowdModel::KeyFacts& CrowdModel::find(std::uint32_t key) const {
   KeyFacts& facts = keys_[key];
   std::call_once(facts.once, [&] {
     const Vec3f* at = tracer_.rays().poses->key(key);
-    double longest = 0;
-    for (const Triangle& t : model().triangles)
-      for (int k = 0; k < 3; ++k) {
-        const Vec3d edge = to_double(at[t.v[k]]) - to_double(at[t.v[(k + 1) % 3]]);
-        const double square = dot(edge, edge);
-        if (square > longest) longest = square;  // not where a corner is no number: never hit
-      }
-    facts.longest_edge = static_cast<float>(std::sqrt(longest) * (1 + 0x1p-20));
+    float longest_of_all = 0;
+    for (const Cluster& cluster : model().clusters) {
+      double longest = 0;
+      for (const Triangle& t :
+           model().triangles.subspan(cluster.first_triangle, cluster.triangle_count))
+        for (int k = 0; k < 3; ++k) {
+          const Vec3d edge = to_double(at[t.v[k]]) - to_double(at[t.v[(k + 1) % 3]]);
+          const double square = dot(edge, edge);
+          if (square > longest) longest = square;  // not where a corner is no number: never hit
+        }
+      facts.longest_edges.push_back(static_cast<float>(std::sqrt(longest) * (1 + 0x1p-20)));
+      longest_of_all = std::max(longest_of_all, facts.longest_edges.back());
+    }
+    facts.longest_edges.push_back(longest_of_all);
     facts.ready.store(true, std::memory_order_release);
   });
   return facts;

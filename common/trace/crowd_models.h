@@ -24,8 +24,9 @@ class CrowdModel {
   const ModelView& model() const { return tracer_.model(); }
   const RayTracer& tracer() const { return tracer_; }
 
-  /// No edge of a triangle is longer at this key. Cost: O(1), but O(T) the first time.
-  float longest_edge(std::uint32_t key) const { return facts(key).longest_edge; }
+  /// Per cluster, and then of all: no edge of a triangle is longer at this key. Cost: O(1), but
+  /// O(T) the first time.
+  const float* longest_edges(std::uint32_t key) const { return facts(key).longest_edges.data(); }
   /// Smooth normals of all vertices at a key, in the model: unit, weighted by area, or zero where
   /// the triangles around a vertex have no direction. Cost: O(1), but O(T) the first time.
   std::span<const Vec3f> normals(std::uint32_t key) const;
@@ -38,7 +39,7 @@ class CrowdModel {
   struct KeyFacts {
     std::atomic<bool> ready = false, has_normals = false;
     std::once_flag once, normals_once;
-    float longest_edge = 0;
+    std::vector<float> longest_edges;
     std::vector<Vec3f> normals;
   };
   const KeyFacts& facts(std::uint32_t key) const {

@@ -120,17 +120,27 @@ InstanceRays make_instance_rays(const CrowdFrame& frame, std::uint32_t instance)
   }
   const float nearest = image.nearest - error[2];
   r.has_lines = false;
-  r.line_slack = r.line_reach = 0;
+  r.line_slack = 0;
+  r.line_reach = {};
+  r.edges[0] = r.edges[1] = nullptr;
+  r.longest_edge = 0;
   // Written so that what is no number counts as behind the eye.
   if (!(nearest > error[2] * 0x1p10f && nearest > 1e-20f && image.farthest < 1e20f)) {
     r.screen = {-kInfinity, kInfinity, -kInfinity, kInfinity, 0};
     return r;
   }
   const float inverse = 1 / nearest;
+  // Coordinates of pixels that may be hit are no larger; nor need the margin be larger than what
+  // rounding does to them.
+  const float coordinates = std::max({std::abs(image.first_x), std::abs(image.last_x),
+                                      std::abs(image.first_y), std::abs(image.last_y), 1.0f}) +
+                            1;
+  r.pixel_from_model.margin = std::min(kBoundsMargin, coordinates * 0x1p-15f);
   // Of a point at image x: its own error, and x times that of its depth.
   const auto pad = [&](int row, float first, float last) {
     const float most = std::max(std::abs(first), std::abs(last));
-    return 2 * kBoundsMargin + (error[row] + most * (error[2] + nearest * kRounding)) * inverse;
+    return 2 * r.pixel_from_model.margin +
+           (error[row] + most * (error[2] + nearest * kRounding)) * inverse;
   };
   const float pad_x = pad(0, image.first_x, image.last_x),
               pad_y = pad(1, image.first_y, image.last_y);
@@ -150,39 +160,41 @@ InstanceRays make_instance_rays(const CrowdFrame& frame, std::uint32_t instance)
     return r;
 
   // Lines. A pixel is hit where it is inside all edges, give or take what rounding does to them,
-  // and within the margin of the corners' bounds. Away from an edge by d pixels, an edge of l
-  // pixels that is D pixels long in space is told right where d > K (1 + D / l) (docs/crowds.md);
-  // so no triangle is hit from farther off than the margin along a diagonal and 2 sqrt(6 K D) + 4
-  // K.
-  const double coordinates = std::max({std::abs(image.first_x), std::abs(image.last_x),
-                                       std::abs(image.first_y), std::abs(image.last_y), 1.0f}) +
-                             1;
-  const double edge = std::max(crowd.longest_edge(r.at.key0), crowd.longest_edge(r.at.key1));
-  const double edge_pixels = edge *
-                             (static_cast<double>(sum_of_sizes(map.m[0]) + sum_of_sizes(map.m[1])) +
-                              coordinates * static_cast<double>(sum_of_sizes(map.m[2]))) *
-                             static_cast<double>(inverse);
-  const double k = 0x1p-20 * coordinates;
-  const double off = 1.5 * double{kBoundsMargin} + 2 * std::sqrt(6 * k * edge_pixels) + 4 * k;
+  // and within the margin of the corners' bounds. An edge of l pixels tells sides right past
+  // K (1 + D / l) pixels, D the coordinates times the share that its depth changes by; so no
+  // triangle is hit from farther off than the margin along a diagonal and 2 sqrt(6 K D) + 4 K
+  // (docs/crowds.md).
+  r.edges[0] = crowd.longest_edges(r.at.key0);
+  r.edges[1] = crowd.longest_edges(r.at.key1);
+  r.longest_edge = std::max(r.edges[0][r.model->clusters], r.edges[1][r.model->clusters]);
+  const double most = static_cast<double>(coordinates),
+               depth_per_length = static_cast<double>(sum_of_sizes(map.m[2]));
+  const double depth_ratio = static_cast<double>(image.farthest * inverse);
+  const double share =
+      static_cast<double>(r.longest_edge) * depth_per_length * static_cast<double>(inverse);
+  const double k = 0x1p-18 * most * depth_ratio * depth_ratio;
+  const double off = 1.6 * static_cast<double>(r.pixel_from_model.margin) +
+                     2 * std::sqrt(6 * k * most * share) + 4 * k;
   const double far = static_cast<double>(image.farthest);
   double slack = 0;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const double u = std::abs(static_cast<double>(r.rays.du[axis])),
                  v = std::abs(static_cast<double>(r.rays.dv[axis])),
-                 w = std::abs(static_cast<double>(r.rays.corner[axis])) + coordinates * (u + v);
+                 w = std::abs(static_cast<double>(r.rays.corner[axis])) + most * (u + v);
     slack = std::max(slack, u * (static_cast<double>(error[0]) + off * far) +
                                 v * (static_cast<double>(error[1]) + off * far) +
                                 w * static_cast<double>(error[2]));
   }
+  // What rounding the clusters' maps moves boxes by, and the direction of the line.
   const Vec3f center = model.bounds.center(), origin = r.rays.origin;
   const double distance =
       static_cast<double>(std::abs(center.x - origin.x) + std::abs(center.y - origin.y) +
                           std::abs(center.z - origin.z) + r.model->diagonal);
-  slack += distance * (1.25 * 0x1p-19);
+  slack += static_cast<double>(r.model->diagonal) * 0x1p-20 + distance * 0x1p-22;
   r.has_lines = true;
   r.line_slack = static_cast<float>(slack * (1 + 0x1p-10));
-  r.line_reach = static_cast<float>((edge + 3 * slack) *
-                                    static_cast<double>(sum_of_sizes(map.m[2])) * (1 + 0x1p-10));
+  r.line_reach = {static_cast<float>(3 * slack * depth_per_length * (1 + 0x1p-10)),
+                  static_cast<float>(depth_per_length * (1 + 0x1p-10))};
   return r;
 }
 

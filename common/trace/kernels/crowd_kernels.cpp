@@ -249,6 +249,7 @@ class PixelLine {
         row_(y),
         x_(place_x),
         y_(place_y),
+        reach_(instance.line_reach.of(instance.longest_edge)),
         counter_(counter) {
     set_limit();
   }
@@ -260,6 +261,7 @@ class PixelLine {
                 direction = to_double(instance_.rays.corner) +
                             to_double(instance_.rays.du) * static_cast<double>(x_) +
                             to_double(instance_.rays.dv) * static_cast<double>(y_);
+    const float longest_reach = reach_;
     const FourFloats slack = FourFloats::all(instance_.line_slack);
     const FourFloats rounding = FourFloats::all(0x1p-19f);
     const FourFloats from = four_floats(origin), along = four_floats(direction);
@@ -296,9 +298,11 @@ class PixelLine {
             }) << i;
           return entered;
         },
-        [&](float order) { return order > hit_.t; },
+        [&](float order) { return order > nearest_ + longest_reach; },
         [&](std::uint32_t c) {
           counter_.clusters(1);
+          reach_ = instance_.line_reach.of(std::max(instance_.edges[0][c], instance_.edges[1][c]));
+          hit_.t = nearest_ + reach_;
           const rays::MappedRay mapped = map_into(c);
           const RayTree& tree = trees[c];
           const rays::BoxRay local(
@@ -348,14 +352,15 @@ class PixelLine {
     entry = {&block, scratch_.entered};
     const FloatTag d;
     const BlockCorners corners(block, instance_.pixel_from_model, instance_.vertices);
-    Projector projector(block.count, corners, p);
+    Projector projector(block.count, corners, instance_.pixel_from_model.margin, p);
     projector.run([&](std::size_t) { return hn::Eq(hn::Zero(d), hn::Zero(d)); });
     return p;
   }
 
   void set_limit() {
     best_ = image_.inverse_depth(column_, row_);
-    hit_.t = (1 + 0x1p-20f) / best_ + instance_.line_reach;
+    nearest_ = (1 + 0x1p-20f) / best_;
+    hit_.t = nearest_ + reach_;
   }
 
   const InstanceRays& instance_;
@@ -363,7 +368,7 @@ class PixelLine {
   CrowdScratch& scratch_;
   std::uint32_t column_, row_;
   float x_, y_;
-  float best_;
+  float best_, nearest_, reach_;
   RayHit hit_;  ///< of it only t is in use: how far boxes matter
   Counter counter_;
 };
@@ -389,7 +394,7 @@ class InstanceTester {
   void test(const RayBlock& block) {
     counter_.candidates(block.count);
     const BlockCorners corners(block, instance_.pixel_from_model, instance_.vertices);
-    Projector projector(block.count, corners, projected_);
+    Projector projector(block.count, corners, instance_.pixel_from_model.margin, projected_);
     projector.run([&](std::size_t i) { return image_.may_hit(projected_, i); });
     std::uint32_t mask = projected_.live;
     if ((mask & projected_.behind) != 0)
@@ -642,7 +647,7 @@ bool TraceCrowdBrute(const TileRays& tile, std::span<const BruteInstance> all, T
     const TileEdges edges{left, left + kTileSide, top, top + kTileSide};
     for (const TriangleBlock& block : instance.blocks) {
       const IndexedCorners corners{block, instance.rays.pixel_from_model, instance.positions};
-      Projector projector(block.count, corners, projected);
+      Projector projector(block.count, corners, instance.rays.pixel_from_model.margin, projected);
       projector.run([&](std::size_t i) { return image.may_hit(projected, i); });
       std::uint32_t mask = projected.live;
       if ((mask & projected.behind) != 0)

@@ -55,7 +55,15 @@ struct InstanceRays {
   ScreenBox screen;  ///< in the picture, where no pixel outside hits the instance
   bool has_lines;    ///< its pixels go one by one
   float line_slack;  ///< by what boxes in the model must give way to a pixel's line
-  float line_reach;  ///< by how much a hit may be nearer than where the line enters its box
+  /// By how much a hit may be nearer than where the line enters the hit triangle's box, given how
+  /// long the triangle's edges may be: `edges` of each cluster, at both keys.
+  struct Reach {
+    float base, per_edge;
+    float of(float edge) const { return base + per_edge * edge; }
+  };
+  Reach line_reach;
+  const float* edges[2];
+  float longest_edge;
 };
 
 /// What bounds a frame's rays in the basis of each cluster of an instance.

@@ -64,8 +64,9 @@ struct IndexedCorners {
 template <class CornerSource>
 class Projector {
  public:
-  Projector(std::uint32_t count, const CornerSource& corners, ProjectedBlock& out)
-      : count_(count), corners_(corners), out_(out) {}
+  /// `margin`: how far outside the corners' image bounds a hit may be (PixelFromWorld).
+  Projector(std::uint32_t count, const CornerSource& corners, float margin, ProjectedBlock& out)
+      : count_(count), corners_(corners), margin_(margin), out_(out) {}
 
   /// Looks at `wanted(first)`, the mask of lanes that matter given the bounds now stored for them,
   /// before it computes any form: lanes it leaves out are not live.
@@ -101,10 +102,10 @@ class Projector {
     const auto span = [&](FloatVec a, FloatVec b, FloatVec c, float* first, float* last) {
       const auto u = hn::Mul(a, ra), v = hn::Mul(b, rb), w = hn::Mul(c, rc);
       const auto half = hn::Set(d, 0.5f);
-      const auto lo = hn::Add(
-          hn::Ceil(hn::Sub(hn::Min(hn::Min(u, v), w), hn::Set(d, 0.5f + kBoundsMargin))), half);
-      const auto hi = hn::Add(
-          hn::Floor(hn::Sub(hn::Max(hn::Max(u, v), w), hn::Set(d, 0.5f - kBoundsMargin))), half);
+      const auto lo =
+          hn::Add(hn::Ceil(hn::Sub(hn::Min(hn::Min(u, v), w), hn::Set(d, 0.5f + margin_))), half);
+      const auto hi =
+          hn::Add(hn::Floor(hn::Sub(hn::Max(hn::Max(u, v), w), hn::Set(d, 0.5f - margin_))), half);
       hn::Store(hn::IfThenElse(in_front, lo, hn::Neg(infinite)), d, first + i);
       hn::Store(hn::IfThenElse(in_front, hi, infinite), d, last + i);
       return hn::Sub(hi, lo);
@@ -138,6 +139,7 @@ class Projector {
 
   const std::uint32_t count_;
   const CornerSource& corners_;
+  const float margin_;
   ProjectedBlock& out_;
 };
 

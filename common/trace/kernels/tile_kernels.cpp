@@ -30,7 +30,7 @@ class BlockTester {
   void test(const TriangleBlock& block, ProjectedBlock& projected) {
     counter_.candidates(block.count);
     const IndexedCorners corners{block, *tile_.pixel_from_world, positions_};
-    Projector projector(block.count, corners, projected);
+    Projector projector(block.count, corners, tile_.pixel_from_world->margin, projected);
     projector.run([&](std::size_t i) { return image_.may_hit(projected, i); });
     finish(block, projected, projected.live);
   }
@@ -41,7 +41,7 @@ class BlockTester {
     const FloatTag d;
     const ProjectedBlock& projected = cache.get(number, spare, [&](ProjectedBlock& out) {
       const IndexedCorners corners{block, *tile_.pixel_from_world, positions_};
-      Projector projector(block.count, corners, out);
+      Projector projector(block.count, corners, tile_.pixel_from_world->margin, out);
       projector.run([&](std::size_t) { return hn::Eq(hn::Zero(d), hn::Zero(d)); });
     });
     counter_.candidates(block.count);
