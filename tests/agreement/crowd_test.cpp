@@ -103,6 +103,53 @@ TEST(CrowdAgreement, GivesBruteForcesPixelsWhateverTheCrowd) {
   EXPECT_GT(hits, 50'000u);
 }
 
+/// Sheets whose planes all hold the eye: their edge functions are nothing but rounding.
+TEST(CrowdAgreement, HoldsForSheetsSeenEdgeOn) {
+  auto baked = std::make_shared<DecomposeResult>(test::bake(test::edge_on_sheet(60, 3)));
+  auto view = std::make_shared<const ModelView>(baked->model.view());
+  const std::vector<Model> sheet = {ModelHandle::make(*view, view)};
+  const float size = diagonal(view->bounds);
+  SceneRequest request;
+  request.camera = {.eye = {3, 1, 2}, .target = {4, 2, -20}, .vertical_fov_deg = 60};
+  request.width = request.height = 200;
+  request.time = 0.1;
+  std::uint64_t hits = 0;
+  for (const float scale : {0.02f, 0.1f, 0.4f, 2.0f}) {
+    SceneStorage storage;
+    storage.model_count = 1;
+    storage.roles = {{0, 0}};
+    std::mt19937 random(5);
+    std::uniform_real_distribution<float> in(-1, 1);
+    for (int i = 0; i < 300; ++i) {
+      SceneInstance& instance = storage.instances.emplace_back();
+      storage.labels.emplace_back();
+      // Through the centres of a column or a row of pixels.
+      const PinholeRays rays = make_pinhole_rays(request.camera, request.width, request.height);
+      const Vec3f way = rays.direction(static_cast<float>(random() % 200) + 0.5f,
+                                       static_cast<float>(random() % 200) + 0.5f);
+      const Vec3f at = rays.origin + way * (20 + 6 * in(random));
+      const Vec3f z = normalized(way), x = normalized(cross(z, i % 2 == 0 ? rays.dv : rays.du)),
+                  y = cross(z, x);
+      for (std::size_t row = 0; row < 3; ++row) {
+        instance.map.m[row][0] = x[row] * scale / size;
+        instance.map.m[row][1] = y[row] * scale / size;
+        instance.map.m[row][2] = z[row] * scale / size;
+        instance.map.m[row][3] = at[row];
+      }
+    }
+    const Stage stage(storage.view(), sheet);
+    SceneRenderer oracle(stage, kBrute);
+    hits += oracle.trace(request).hits;
+    for (const float share : {0.0f, 1e9f}) {
+      SceneRenderer renderer(stage, with_lines(share));
+      renderer.trace(request);
+      EXPECT_EQ(count_mismatches(oracle.hits(), renderer.hits()), 0u)
+          << "scale " << scale << ", lines " << share;
+    }
+  }
+  EXPECT_GT(hits, 300u);
+}
+
 TEST(CrowdAgreement, LinesAndFrustaAreBothTaken) {
   const Crowd crowd(60, 40, 4);
   SceneRequest request;
