@@ -70,7 +70,7 @@ InstanceRays make_instance_rays(const CrowdFrame& frame, std::uint32_t instance)
 
   InstanceRays r;
   r.instance = instance;
-  r.at = stage.key_interval(instance, frame.time);
+  r.at = r.time = stage.key_interval(instance, frame.time);
   r.model = &crowd.tracer().rays();
   r.segment = crowd.tracer().segment(r.at);
   r.vertices = {nullptr, nullptr, r.at.s};
@@ -225,6 +225,7 @@ const InstanceRays* InstancePool::enter(std::uint32_t instance) {
       const KeyPoses& poses = *place.rays.model->poses;
       place.rays.vertices = {poses.key(place.rays.at.key0), poses.key(place.rays.at.key1),
                              place.rays.at.s};
+      if (frame_->refitted != nullptr) frame_->refitted->replace(place.rays);
       ++posed_;
     }
     place.forms_of = kNoHit;
@@ -258,10 +259,9 @@ const FrustumForms& InstancePool::model_forms() {
   const std::size_t last = current_->rays.model->clusters;
   if (current_->has_forms[last] == 0) {
     current_->has_forms[last] = 1;
-    const ModelView& model = frame_->stage->model_of(current_->rays.instance);
-    current_->forms[last] =
-        make_frustum_forms(current_->rays.rays, Affine3d(), model_box(model, current_->rays.at),
-                           pixels_before(current_->rays));
+    const InstanceRays& r = current_->rays;
+    const Aabb box{{r.lo[0], r.lo[1], r.lo[2]}, {r.hi[0], r.hi[1], r.hi[2]}};
+    current_->forms[last] = make_frustum_forms(r.rays, Affine3d(), box, pixels_before(r));
   }
   return current_->forms[last];
 }

@@ -12,6 +12,7 @@
 #include "common/trace/camera.h"
 #include "common/trace/crowd_models.h"
 #include "common/trace/kernels/crowd_kernels.h"
+#include "common/trace/refitted_instances.h"
 
 namespace mdk {
 
@@ -26,6 +27,7 @@ struct CrowdFrame {
   /// An instance of so many pixels a triangle, or fewer, is traced pixel by pixel: as a frustum it
   /// would enter more blocks than that.
   float line_share = 0;
+  const RefittedInstances* refitted = nullptr;  ///< what instances go through instead, if anything
 };
 
 /// The rays of a frame in the model of an instance that is shown. The agreed rounding: image points

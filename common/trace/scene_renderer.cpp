@@ -128,6 +128,7 @@ struct SceneRenderer::State {
   Film film;
   SceneStats stats;
 
+  RefittedInstances refitted;
   std::vector<BruteInstance> brute;
   std::vector<std::vector<TriangleBlock>> brute_blocks;  ///< by model
   std::vector<std::vector<Vec3f>> brute_positions;
@@ -150,6 +151,10 @@ struct SceneRenderer::State {
     } else if (!trees) {
       trees.emplace(stage);
       stats.prebuild_ms += watch.lap() * 1e3;
+    }
+    if (options.technique == SceneTechnique::kRefit) {
+      refitted.update(stage, models, frame.time);
+      frame.refitted = &refitted;
     }
     stats.update_ms += watch.lap() * 1e3;
   }
@@ -209,12 +214,13 @@ struct SceneRenderer::State {
              .pixel_from_world = {},
              .width = request.width,
              .height = request.height,
-             .line_share = options.line_share};
+             .line_share = options.line_share,
+             .refitted = nullptr};
     frame.pixel_from_world = make_pixel_from_world(frame.rays);
     ++serial;
     update();
     Stopwatch watch;
-    const CrowdView seen = options.technique == SceneTechnique::kFuzzy ? view() : CrowdView{};
+    const CrowdView seen = options.technique == SceneTechnique::kBruteForce ? CrowdView{} : view();
     stats.update_ms += watch.lap() * 1e3;
     if (order_width != request.width || order_height != request.height) {
       order = tile_order(request.width, request.height);
@@ -259,7 +265,7 @@ struct SceneRenderer::State {
                         hits.hits.tile_top(t)};
     TileHits& to = hits.hits.tile(t);
     hits.hits.set_hit(
-        t, options.technique == SceneTechnique::kFuzzy
+        t, options.technique != SceneTechnique::kBruteForce
                ? trace_crowd_tile(tile, seen, w.pool, *w.scratch, to, hits.instances[t], counters)
                : trace_crowd_brute(tile, brute, to, hits.instances[t]));
   }
@@ -303,7 +309,7 @@ const SceneHits& SceneRenderer::hits() const { return state_->hits; }
 const SceneStats& SceneRenderer::stats() const { return state_->stats; }
 
 std::size_t SceneRenderer::structure_bytes() const {
-  std::size_t sum = state_->trees ? state_->trees->bytes() : 0;
+  std::size_t sum = (state_->trees ? state_->trees->bytes() : 0) + state_->refitted.bytes();
   for (const auto& model : state_->models) sum += model->structure_bytes();
   return sum;
 }

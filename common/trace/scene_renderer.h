@@ -54,7 +54,11 @@ struct SceneHits {
 /// Pixels of two pictures of one size whose instance, triangle or depth differ, to the bit.
 std::uint64_t count_mismatches(const SceneHits& a, const SceneHits& b);
 
-enum class SceneTechnique { kFuzzy, kBruteForce };
+enum class SceneTechnique {
+  kFuzzy,       ///< fuzzy-bvh: one structure for all instances of a model, whatever their times
+  kRefit,       ///< refit-bvh: a hierarchy for each instance, refitted in every frame
+  kBruteForce,  ///< brute-force: every triangle of every instance
+};
 
 struct SceneOptions {
   SceneTechnique technique = SceneTechnique::kFuzzy;

@@ -44,7 +44,7 @@ struct Shaded {
 
   Vec3f normal(std::uint32_t vertex) const {
     const Vec3f& a = from_normals[vertex];
-    return a + (to_normals[vertex] - a) * rays->at.s;
+    return a + (to_normals[vertex] - a) * rays->time.s;
   }
 
   Surface surface(const Triangle& t, bool is_flat, const Vec3f& direction,
@@ -115,8 +115,8 @@ void SceneShader::shade_tile(const CrowdFrame& frame, ShadingMode mode, std::uin
       at.model = stage_.role(at.number).model;
       at.crowd = models_[at.model].get();
       at.model_from_world = to_float(stage_.model_from_world(at.number, frame.time));
-      at.from_normals = at.crowd->normals(at.rays->at.key0).data();
-      at.to_normals = at.crowd->normals(at.rays->at.key1).data();
+      at.from_normals = at.crowd->normals(at.rays->time.key0).data();
+      at.to_normals = at.crowd->normals(at.rays->time.key1).data();
       at.tint = linear_color(stage_.scene().labels[at.number].tint);
     }
     const ModelView& model = at.crowd->model();

@@ -81,9 +81,11 @@ Json stats_row(const SceneFrame& frame, const SceneStats& stats, const SceneStat
 
 SceneTechnique technique_of(const std::string& id) {
   if (id == "fuzzy-bvh") return SceneTechnique::kFuzzy;
+  if (id == "refit-bvh") return SceneTechnique::kRefit;
   if (id == "brute-force") return SceneTechnique::kBruteForce;
-  throw Error(ErrorCode::kUsage,
-              "--technique " + id + ": scenes are rendered with fuzzy-bvh or brute-force");
+  throw Error(
+      ErrorCode::kUsage,
+      "--technique " + id + ": scenes are rendered with fuzzy-bvh, refit-bvh or brute-force");
 }
 
 void check_outputs(const SceneRenderArguments& arguments, const std::vector<SceneFrame>& frames) {

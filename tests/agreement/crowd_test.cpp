@@ -62,6 +62,8 @@ std::vector<Camera> cameras_for(const Stage& stage, float reach, double time, st
 
 constexpr SceneOptions kBrute{.technique = SceneTechnique::kBruteForce};
 
+constexpr SceneOptions kRefit{.technique = SceneTechnique::kRefit};
+
 SceneOptions with_lines(float share) { return {.line_share = share}; }
 
 struct Crowd {
@@ -83,7 +85,8 @@ TEST(CrowdAgreement, GivesBruteForcesPixelsWhateverTheCrowd) {
       // As it chooses itself, all instances as frusta, all that may as lines, and a mixture.
       SceneRenderer ways[] = {SceneRenderer(crowd.stage), SceneRenderer(crowd.stage, with_lines(0)),
                               SceneRenderer(crowd.stage, with_lines(1e9f)),
-                              SceneRenderer(crowd.stage, with_lines(2))};
+                              SceneRenderer(crowd.stage, with_lines(2)),
+                              SceneRenderer(crowd.stage, kRefit)};
       const double time = 60 * std::fmod(seed * 0.618, 1.0);
       for (const Camera& camera : cameras_for(crowd.stage, reach, time, seed)) {
         SceneRequest request;

@@ -47,7 +47,8 @@ struct InstanceRays {
   float shift_x, shift_y;  ///< the tile's corner in the picture
   PinholeRays rays;
   PixelFromWorld pixel_from_model;
-  KeyInterval at;
+  KeyInterval at;    ///< where boxes and maps are taken from
+  KeyInterval time;  ///< of the instance: where its vertices are
   std::uint32_t segment;
   const RayModel* model;
   VertexSource vertices;
