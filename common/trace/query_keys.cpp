@@ -11,8 +11,7 @@
 
 namespace mdk {
 
-KeyPoses::KeyPoses(const ModelView& model, std::vector<std::uint32_t> order,
-                   std::size_t max_bytes)
+KeyPoses::KeyPoses(const ModelView& model, std::vector<std::uint32_t> order, std::size_t max_bytes)
     : model_(&model), order_(std::move(order)) {
   const std::uint32_t keys = model.key_count();
   const std::size_t most = max_bytes / ((order_.size() + 1) * sizeof(Vec3f));

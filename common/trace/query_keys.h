@@ -1,5 +1,6 @@
-// What single rays need of a model's keys: key poses, decoded when first asked for, and the clusters'
-// boxes and maps, laid out for one ray against many clusters. All serve any moment between keys.
+// What single rays need of a model's keys: key poses, decoded when first asked for, and the
+// clusters' boxes and maps, laid out for one ray against many clusters. All serve any moment
+// between keys.
 #pragma once
 
 #include <atomic>
@@ -16,8 +17,8 @@ namespace mdk {
 
 /// Safe to use from many threads at once; the model must outlive it. Memory: 12 bytes a vertex for
 /// each key that is held. Vertices stand in an order of the caller's, so that those that are used
-/// together stand together. Where not all keys fit, each has a place while it is held; which one gives way is
-/// chosen by going round (clock).
+/// together stand together. Where not all keys fit, each has a place while it is held; which one
+/// gives way is chosen by going round (clock).
 class KeyPoses {
  public:
   /// Vertex i of a pose is vertex order[i] of the model.
@@ -38,6 +39,16 @@ class KeyPoses {
   }
   void release(const KeyInterval& at) const {
     if (places_ != nullptr) let_go_both(at);
+  }
+  /// Where each vertex of the model stands in a pose; of one that no block uses, 0. Cost: O(1), the
+  /// first time O(vertices).
+  const std::uint32_t* places() const {
+    std::call_once(places_known_, [&] {
+      place_of_.assign(model_->vertex_count, 0);
+      for (std::size_t i = 0; i < order_.size(); ++i)
+        place_of_[order_[i]] = static_cast<std::uint32_t>(i);
+    });
+    return place_of_.data();
   }
   /// What is decoded now, and the order.
   std::size_t bytes() const {
@@ -75,11 +86,13 @@ class KeyPoses {
 
   const ModelView* model_;
   std::vector<std::uint32_t> order_;
+  mutable std::once_flag places_known_;
+  mutable std::vector<std::uint32_t> place_of_;
   mutable std::atomic<std::size_t> decoded_ = 0;
   std::unique_ptr<Kept[]> kept_;  ///< by key; none where keys come and go
 
   std::size_t place_count_ = 0;
-  std::unique_ptr<Place[]> places_;                           ///< none where all keys stay
+  std::unique_ptr<Place[]> places_;                             ///< none where all keys stay
   std::unique_ptr<std::atomic<std::uint32_t>[]> place_of_key_;  ///< or place_count_
   mutable std::mutex changing_;
   mutable std::size_t next_place_ = 0;

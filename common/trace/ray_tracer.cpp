@@ -46,8 +46,8 @@ std::vector<std::uint32_t> number_vertices(const ModelView& model,
 
 /// Which vertex has each place.
 std::vector<std::uint32_t> inverted(const std::vector<std::uint32_t>& place) {
-  std::vector<std::uint32_t> order(
-      place.size() - static_cast<std::size_t>(std::ranges::count(place, kNowhere)));
+  std::vector<std::uint32_t> order(place.size() -
+                                   static_cast<std::size_t>(std::ranges::count(place, kNowhere)));
   for (std::uint32_t v = 0; v < place.size(); ++v)
     if (place[v] != kNowhere) order[place[v]] = v;
   return order;
@@ -106,8 +106,8 @@ struct RayTracer::Data {
   }
 
   /// The hierarchy in the world that moments of a segment refit; the first one makes it. Without a
-  /// lock: a thread that waits for its own loop might come by here again. Two that come at once make
-  /// it twice.
+  /// lock: a thread that waits for its own loop might come by here again. Two that come at once
+  /// make it twice.
   const WorldTree& world_tree(std::uint32_t segment, const VertexSource& source) {
     const WorldTree* found = world_trees[segment].load(std::memory_order_acquire);
     if (found != nullptr) return *found;
@@ -121,7 +121,8 @@ struct RayTracer::Data {
   }
 
   struct KeyTimes {
-    std::uint32_t segment_at = 0, segment_before = 0;  ///< of the key, and of the interval before it
+    std::uint32_t segment_at = 0,
+                  segment_before = 0;  ///< of the key, and of the interval before it
     bool has_before = false;
   };
 
@@ -152,13 +153,26 @@ bool RayTracer::has_time(const KeyInterval& at) const {
 }
 
 std::size_t RayTracer::bytes() const {
-  std::size_t sum = data_->moment_bytes.load() + data_->poses.bytes() + data_->top.bytes() + data_->maps.bytes() +
-                    data_->trees.size() * sizeof(RayTree) +
+  std::size_t sum = data_->moment_bytes.load() + data_->poses.bytes() + data_->top.bytes() +
+                    data_->maps.bytes() + data_->trees.size() * sizeof(RayTree) +
                     data_->place_of_vertex.size() * sizeof(std::uint32_t) +
                     data_->key_times.size() * sizeof(Data::KeyTimes);
   for (const RaySegment& segment : data_->segments) sum += segment.bytes();
   return sum;
 }
+
+const RayModel& RayTracer::rays() const { return data_->rays; }
+
+std::uint32_t RayTracer::segment_at(const KeyInterval& time) const {
+  return data_->segment_of(time);
+}
+
+HeldVertices::HeldVertices(const RayTracer& tracer, const KeyInterval& time)
+    : tracer_(tracer),
+      time_(time),
+      source_(tracer.data_->poses.acquire(time)),
+      places_(tracer.data_->poses.places()) {}
+HeldVertices::~HeldVertices() { tracer_.data_->poses.release(time_); }
 
 QueryHit RayTracer::trace(const QueryRay& ray, const KeyInterval& time, RayAim aim) const {
   return trace_ray(data_->rays, ray, time, data_->segment_of(time), aim);
@@ -197,8 +211,8 @@ QueryHit RayMoment::trace(const QueryRay& ray, RayAim aim) const {
     constexpr std::uint32_t kTrianglesPerRay = 64, kNewTrianglesPerRay = 8, kLeastRays = 64;
     const RayTracer::Data& data = *tracer_.data_;
     const bool is_new = data.world_trees[data.segment_of(time_)].load() == nullptr;
-    const std::uint32_t enough =
-        kLeastRays + data.model.triangle_count() / (is_new ? kNewTrianglesPerRay : kTrianglesPerRay);
+    const std::uint32_t enough = kLeastRays + data.model.triangle_count() /
+                                                  (is_new ? kNewTrianglesPerRay : kTrianglesPerRay);
     // One ray is the one past them: it makes what the others then use.
     if (rays_.fetch_add(1, std::memory_order_relaxed) != enough)
       return tracer_.trace(ray, time_, aim);

@@ -15,16 +15,18 @@ namespace {
 using layout::ClipRecord;
 using layout::ModelRecord;
 
-const ModelRecord& only_record(const MdkSections& sections, const std::string& path) {
-  const auto records = sections.array<ModelRecord>(layout::kModel);
+const ModelRecord& only_record(const FileSections& sections, const std::string& path) {
+  const auto records = sections.array<ModelRecord>(layout::kModel.id);
   if (records.size() != 1) {
     throw bad_input(path, "section model must hold one record; the file is damaged: bake it again");
   }
   const ModelRecord& record = records.front();
-  if (record.pose_kind > PoseKind::kQuantized) {
+  if ((record.flags & ~layout::kKeysOnly) != 0) {
+    throw bad_input(path, "its model has flags this program does not know; use a newer one");
+  }
+  if (record.pose_kind > static_cast<std::uint16_t>(PoseKind::kQuantized)) {
     throw bad_input(
-        path, "stores its poses as kind " +
-                  std::to_string(static_cast<std::uint32_t>(record.pose_kind)) +
+        path, "stores its poses as kind " + std::to_string(record.pose_kind) +
                   ", which this program does not know (it knows 0, key positions, "
                   "1, a rig, and 2, quantised positions); use a newer one, or bake the file again");
   }
@@ -32,9 +34,9 @@ const ModelRecord& only_record(const MdkSections& sections, const std::string& p
 }
 
 /// Names must follow one another, so that together they take no more memory than the file.
-std::vector<Clip> read_clips(const MdkSections& sections, const std::string& path) {
-  const auto records = sections.array<ClipRecord>(layout::kClips);
-  const auto names = sections.array<char>(layout::kClipNames);
+std::vector<Clip> read_clips(const FileSections& sections, const std::string& path) {
+  const auto records = sections.array<ClipRecord>(layout::kClips.id);
+  const auto names = sections.array<char>(layout::kClipNames.id);
   std::vector<Clip> clips;
   clips.reserve(records.size());
   std::size_t next = 0;
@@ -61,18 +63,19 @@ bool counts_agree(const ModelRecord& record, const ModelView& model) {
 
 struct MdkFile::State {
   explicit State(const std::string& file_path)
-      : path(file_path), file(path), sections(file.bytes(), path) {
+      : path(file_path), file(path), sections(layout::kMdkFormat, file.bytes(), path) {
     const ModelRecord& record = only_record(sections, path);
     clips = read_clips(sections, path);
     model.vertex_count = record.vertex_count;
     model.rest_key = record.rest_key;
     model.bounds = record.bounds;
     model.rest_diagonal = record.rest_diagonal;
-    model.poses.kind = record.pose_kind;
+    model.poses.kind = static_cast<PoseKind>(record.pose_kind);
+    model.holds_between_keys = (record.flags & layout::kKeysOnly) == 0;
     model.clips = clips;
     ModelView::for_each_array(
         [&]<class T>(const ModelArray& row, std::span<const T>& array) {
-          array = sections.array<T>(row);
+          array = sections.array<T>(row.id);
         },
         model);
     if (!counts_agree(record, model)) {
@@ -87,7 +90,7 @@ struct MdkFile::State {
 
   std::string path;
   MappedFile file;
-  MdkSections sections;
+  FileSections sections;
   std::vector<Clip> clips;
   ModelView model;
 };
@@ -109,24 +112,9 @@ MdkOrigin MdkFile::origin() const {
           is_foreign ? SourceReader::kAssimp : SourceReader::kMdprep};
 }
 
-std::vector<MdkSectionInfo> MdkFile::sections() const {
-  std::vector<MdkSectionInfo> infos;
-  for (const layout::SectionEntry& entry : state_->sections.table()) {
-    infos.push_back({layout::section_name(entry.id), entry.bytes()});
-  }
-  return infos;
-}
-
-void MdkFile::verify_checksums() const {
-  for (const layout::SectionEntry& entry : state_->sections.table()) {
-    if (checksum_of(state_->sections.content(entry)) != entry.checksum) {
-      throw bad_input(path(),
-                      "section " + layout::section_name(entry.id) +
-                          " differs from its checksum; it is damaged: copy it again, or bake "
-                          "it again");
-    }
-  }
-}
+std::vector<SectionInfo> MdkFile::sections() const { return state_->sections.infos(); }
+void MdkFile::verify_checksums() const { state_->sections.verify_checksums(); }
+std::uint64_t MdkFile::content_hash() const { return state_->sections.header().checksum; }
 
 Model Model::load(const std::string& path) {
   const auto file = std::make_shared<const MdkFile>(path);

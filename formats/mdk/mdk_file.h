@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "common/motion/model.h"
+#include "formats/files/sections.h"
 
 namespace mdk {
 
@@ -24,12 +25,6 @@ struct MdkOrigin {
   SourceReader reader = SourceReader::kMdprep;
 
   bool operator==(const MdkOrigin&) const = default;
-};
-
-/// What the section table says, for `mdprep info`.
-struct MdkSectionInfo {
-  std::string name;  ///< as in docs/file-format.md
-  std::uint64_t bytes = 0;
 };
 
 /// Whether a model may be traced without asking again: all that docs/file-format.md demands of
@@ -57,7 +52,10 @@ class MdkFile {
   std::span<const std::byte> bytes() const;
   /// What made it, where the file says so.
   MdkOrigin origin() const;
-  std::vector<MdkSectionInfo> sections() const;
+  /// Differs where any byte of the content does, but for chance: the checksum over all sections'
+  /// checksums.
+  std::uint64_t content_hash() const;
+  std::vector<SectionInfo> sections() const;
 
   /// Compares every section's contents with its stored checksum; throws Error (kBadInput) naming
   /// the first one that differs. Reads the whole file.

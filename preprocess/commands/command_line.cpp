@@ -14,6 +14,8 @@ Command mdprep_command() {
       "Messages go to stderr, data to stdout. 'mdprep SUBCOMMAND --help' tells more.");
   add_bake_command(mdprep.add_subcommand(
       "bake", "Read an animated mesh and write one .mdk file that is all a renderer needs."));
+  add_scene_command(mdprep.add_subcommand(
+      "scene", "Make a .mds scene: many instances of .mdk models, each at its own time."));
   add_info_command(mdprep.add_subcommand("info", "Show what is inside a .mdk file."));
   add_verify_command(mdprep.add_subcommand(
       "verify",

@@ -14,6 +14,7 @@ void add_render_command(Command& command);
 void add_bench_command(Command& command);
 void add_batch_command(Command& command);
 void add_job_command(Command& command);
+void add_scene_command(Command& command);
 
 /// All of mdprep, ready to parse.
 Command mdprep_command();

@@ -149,7 +149,7 @@ void print_json(const MdkFile& file, const InfoArguments& arguments) {
   for (const Texture& texture : model.appearance.textures)
     textures.push_back({{"width", texture.width}, {"height", texture.height}});
   Json sections = Json::array();
-  for (const MdkSectionInfo& section : file.sections())
+  for (const SectionInfo& section : file.sections())
     sections.push_back({{"name", section.name}, {"bytes", section.bytes}});
   const ClusterSizes sizes = cluster_sizes(model);
   Json info = {
@@ -164,6 +164,7 @@ void print_json(const MdkFile& file, const InfoArguments& arguments) {
       {"keys", model.key_count()},
       {"clips", json_of_clips(model)},
       {"segments", json_of_segments(model)},
+      {"between_keys", model.holds_between_keys},
       {"clusters", model.cluster_count()},
       {"smallest_cluster_triangles", sizes.smallest},
       {"largest_cluster_triangles", sizes.largest},
@@ -228,6 +229,9 @@ void print_facts(const MdkFile& file, const InfoArguments& arguments) {
                                  grouped_text(sizes.smallest) + " to " +
                                  grouped_text(sizes.largest) + " triangles)"});
   facts.add_row({"time segments", segments_text(model)});
+  facts.add_row({"boxes hold", model.holds_between_keys
+                                   ? "at every time"
+                                   : "at keys only: a time between keys is shown as the nearest"});
   facts.add_row({"fuzzy kd-trees", grouped_text(model.kd_nodes.size()) + " nodes, " +
                                        grouped_text(model.kd_refs.size()) + " references"});
   facts.add_row({"rest pose", "key " + std::to_string(model.rest_key) + " (" +
@@ -255,7 +259,7 @@ void print_tables(const MdkFile& file) {
                    std::to_string(clip.first_key + clip.key_count - 1)});
   TextTable sections(1);
   sections.add_row({"section", "bytes"});
-  for (const MdkSectionInfo& section : file.sections())
+  for (const SectionInfo& section : file.sections())
     sections.add_row({section.name, grouped_text(section.bytes)});
   std::cout << "\n";
   clips.print(std::cout);

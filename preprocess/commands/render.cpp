@@ -62,7 +62,8 @@ PlannedFrame frame_at_time(const ModelView& model, std::uint32_t clip, double se
     throw Error(ErrorCode::kUsage, "--time " + shortest_text(seconds) + ": clip " +
                                        model.clips[clip].name + " runs from 0 to " +
                                        fixed_text(length, 6) + " s");
-  return {locate_time(model, clip, seconds), clip, seconds};
+  const KeyInterval at = locate_time(model, clip, seconds);
+  return {at, clip, model.holds_between_keys ? seconds : model.key_times[at.key0]};
 }
 
 /// --frames or --time or, without either, every key of the clip.
@@ -233,6 +234,7 @@ void run_render(const RenderArguments& arguments, CommandContext& context) {
                          {"technique", arguments.technique},
                          {"shading", shading_id(arguments.view.shading)},
                          {"samples", arguments.view.samples},
+                         {"between_keys", model.holds_between_keys},
                          {"frames", rows}};
     write_text_file(arguments.stats,
                     report.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");

@@ -11,6 +11,7 @@
 #include <random>
 #include <thread>
 
+#include "common/base/error.h"
 #include "common/base/isa.h"
 #include "common/base/parallel.h"
 #include "common/motion/model_handle.h"
@@ -228,6 +229,20 @@ TEST(RayQuery, AListAtMixedTimesGivesWhatEachRayGivesOnAnyNumberOfThreads) {
       EXPECT_EQ(shadows[i] != 0, expected[i].triangle != kNoTriangle) << i;
     }
   }
+}
+
+TEST(RayQuery, ATimeBetweenKeysIsRefusedWhereBoxesHoldAtKeysOnly) {
+  DecomposeResult baked = bake(std::move(test::agreement_scenes().front().sequence));
+  baked.model.holds_between_keys = false;
+  const ModelView model = baked.model.view();
+  const RayQuery query(ModelHandle::make(model));
+  const QueryRay ray{.origin = {0, 0, -10}, .direction = {0, 0, 1}};
+  EXPECT_NO_THROW(query.closest_hit(ray, at_key(1)));
+  EXPECT_NO_THROW(query.prepare(at_key(1)));
+  const KeyInterval between{0, 1, 0.5f};
+  EXPECT_THROW(query.closest_hit(ray, between), Error);
+  EXPECT_THROW(query.any_hit(ray, between), Error);
+  EXPECT_THROW(query.prepare(between), Error);
 }
 
 TEST(RayQuery, AMomentGivesBruteForcesHitsBeforeAndAfterItIsPosed) {

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <vector>
 
 #include "mdk/geometry.h"
 #include "mdk/model.h"
@@ -31,6 +32,33 @@ struct QueryHit {
   float bary1 = 0, bary2 = 0;  ///< barycentric coordinates of corners 1 and 2
 
   bool is_hit() const { return triangle != kNoTriangle; }
+};
+
+/// What of a surface costs more than looking it up.
+enum class SurfaceParts : std::uint32_t {
+  kPlain = 0,         ///< position, normal, material, source triangle
+  kSmoothNormal = 1,  ///< else it is the normal
+  kVelocity = 2,      ///< else 0
+  kPaint = 4,         ///< texture coordinates and base colour; else 0
+  kAll = 7,
+};
+constexpr SurfaceParts operator|(SurfaceParts a, SurfaceParts b) {
+  return static_cast<SurfaceParts>(static_cast<std::uint32_t>(a) | static_cast<std::uint32_t>(b));
+}
+constexpr bool has(SurfaceParts parts, SurfaceParts part) {
+  return (static_cast<std::uint32_t>(parts) & static_cast<std::uint32_t>(part)) != 0;
+}
+
+/// What lies where a ray hit.
+struct Surface {
+  Vec3f position;       ///< on the triangle, by its barycentric coordinates
+  Vec3f normal;         ///< the triangle's own, of unit length, outward; 0 for one without area
+  Vec3f smooth_normal;  ///< of unit length, interpolated between the vertices
+  Vec3f velocity;  ///< of the material point: units a second of the clip. At a key, as it goes on
+  float u = 0, v = 0;        ///< texture coordinates as in glTF
+  float base_color[4] = {};  ///< linear RGBA, with texture and vertex colours
+  std::uint32_t material = 0;
+  std::uint32_t source_triangle = 0;  ///< its number in the mesh that was baked
 };
 
 /// One time made ready for many rays. Copies are cheap; each keeps what it needs alive.
@@ -92,6 +120,19 @@ class RayQuery {
 
   /// What the query holds now, in bytes: hierarchies, and what it has kept of keys and moments.
   std::size_t bytes() const;
+
+  /// Every hit in (t_min, t_max], ascending by t, then by triangle.
+  std::vector<QueryHit> all_hits(const QueryRay& ray, const KeyInterval& time) const;
+
+  /// The closest point of the mesh within `radius` (itself included), ties to the lower triangle: t
+  /// is the distance. Throws Error (kUsage) for a point that is not finite, or a radius that is
+  /// NaN.
+  QueryHit closest_point(const Vec3f& point, float radius, const KeyInterval& time) const;
+
+  /// What lies at a hit of this model at its time. Throws Error (kUsage) for a miss. Cost: O(1);
+  /// the first smooth normal O(triangles).
+  Surface surface(const QueryHit& hit, const KeyInterval& time,
+                  SurfaceParts parts = SurfaceParts::kAll) const;
 
  private:
   struct State;
