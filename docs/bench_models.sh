@@ -5,11 +5,39 @@
 mdprep=build/release/bin/mdprep
 samples=build/release/samples
 
+# Models baked in another way than by default, by the end of their names: by the method of GFW06 with its
+# numbers of clusters, with a cluster for each bone, for a pose space, with the first key as rest pose, and one
+# pose alone, cut into clusters.
+base_of() { if [[ $1 =~ ^(.*)-(paper|bones|space|first|level)$ ]]; then echo "${BASH_REMATCH[1]}"; else echo "$1"; fi; }
+
+# How many clusters GFW06 has for the scenes that samples are like.
+paper_clusters() {
+  case $1 in
+    hand | chicken) echo 21 ;;
+    dolphin) echo 16 ;;
+    *) echo 20 ;;
+  esac
+}
+
+# options_of NAME: of its bake.
+options_of() {
+  local name
+  name=$(base_of "$1")
+  case $1 in
+    *-paper) echo --stop 1 --refine off --segments 1 --between-keys off --clusters "$(paper_clusters "${name#real-}")" ;;
+    *-bones) echo --decompose bones ;;
+    *-space) echo --decompose bones --sampling pose-space ;;
+    *-first) echo --rest-pose 0 ;;
+    *-level) echo --clusters "$(paper_clusters "$name")" ;;
+  esac
+}
+
 # make_source NAME: makes a sample that is not committed. NAME-splitN: its triangles split N times.
 make_source() {
-  local name=$1 made=()
+  local name made=()
+  name=$(base_of "$1")
   case $name in
-    hand | ball | cally-* | skeleton-* | paladin-*) return ;;
+    hand | ball | cally-* | skeleton-* | paladin-* | real-*) return ;;
     palm)
       make_source hand-split2
       return
@@ -48,6 +76,9 @@ make_sources() {
 # thesis's animations where MDK_TEST_DATA has them.
 source_of() {
   case $1 in
+    *-level) echo "$samples/$(base_of "$1").obj" ;;
+    *-paper | *-bones | *-space | *-first) source_of "$(base_of "$1")" ;;
+    real-*) echo "${MDK_TEST_DATA:-}/sequences/${1#real-}.obj" "${MDK_TEST_DATA:-}/sequences/${1#real-}.pc2" ;;
     hand) echo assets/hand.glb --clips beckon ;;
     ball) echo assets/ball.glb --clips throw ;;
     hand-split*) echo "$samples/$1.glb" --clips beckon ;;
@@ -86,11 +117,16 @@ measure_model() {
   elif ((triangles <= 500000)); then
     frames=3 techniques=all,-static-kdtree
   else
-    frames=2 techniques=all,-static-kdtree,-tsah-refit,-hybrid-bvh,-decomp-refit,-auto
+    frames=2 techniques=all,-static-kdtree,-tsah-refit,-hybrid-bvh,-rotate-bvh,-decomp-refit,-auto
   fi
   if [[ $techniques != all && $("$mdprep" bench --help) == *embree-medium* ]]; then
     techniques+=,-embree-medium
   fi
+  case $(basename "$file" .mdk) in  # variants are measured for the tables that compare them
+    *-paper | *-level) techniques=static-kdtree,fuzzy-kdtree ;;
+    *-bones | *-space) techniques=rebuild-bvh,refit-bvh,fuzzy-bvh,decomp-refit ;;
+    *-first) techniques=refit-bvh ;;
+  esac
   camera=$(camera_of "$(basename "$file" .mdk)")
   if [[ $camera ]]; then set -- "$@" --camera "$camera"; fi
   [[ $given == *' --frames '* ]] || set -- "$@" --frames "$frames"

@@ -12,7 +12,8 @@
 #
 # Every result is kept in build/results, by the program that was measured: started again after an
 # interruption, it goes on where it was. Bakes are kept there too, so that the measuring itself can be
-# left to a quiet machine. Needs a build (./run build). Where MDK_TEST_DATA names the folder of outside
+# left to a quiet machine. NAME-paper, -bones, -space, -first and -level are baked in other ways, for the papers'
+# tables (docs/bench_models.sh). Needs a build (./run build). Where MDK_TEST_DATA names the folder of outside
 # samples, the thesis's characters are measured too.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -42,12 +43,16 @@ while (($#)); do
 done
 
 models=(hand ball chicken cow dolphin cloth ben hand-split1 hand-split2 palm hand-split3 ben-split2)
+models+=(hand-paper ben-paper chicken-paper cow-paper dolphin-paper chicken-level cow-level dolphin-level)
 setting=(--size 1024x1024)
 if [[ -n ${MDK_TEST_DATA:-} ]]; then
-  models+=(cally-walking cally-freestyle skeleton-freestyle paladin-jogging)
+  models+=(real-cow real-cow-paper)
+  for name in cally-walking cally-freestyle skeleton-freestyle paladin-jogging; do
+    models+=("$name" "$name-bones" "$name-space" "$name-first")
+  done
 fi
 if [[ $quick ]]; then
-  models=(hand ball hand-split1)
+  models=(hand ball hand-split1 hand-paper hand-bones hand-space hand-first)
   setting=(--size 256x256 --frames 3 --rounds 2 --judge 1)
 fi
 
@@ -63,6 +68,7 @@ if [[ $quick ]]; then
   further=(hand hand-split1)
   lit=(hand)
   further_options=(--techniques "$few")
+  lit_options=(--techniques "${few/fuzzy-kdtree,/}" --shading lit --ao 16)
 fi
 
 if [[ $only ]]; then
@@ -80,7 +86,7 @@ bake_all() {
     make_source "$name"
     [[ -f $work/$name.mdk ]] || say "bake $name"
     # shellcheck disable=SC2046
-    bake_model "$work" "$name" $(source_of "$name")
+    bake_model "$work" "$name" $(source_of "$name") $(options_of "$name")
   done
 }
 

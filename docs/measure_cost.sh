@@ -6,48 +6,82 @@
 #     time = what the model costs in any case + box x W + entering x (clusters entered) + cluster x K
 #
 # by least squares, W being the area of the fuzzy boxes in areas of the model's box. Prints the rows and the
-# coefficients. usage: docs/measure_cost.sh [ROUNDS]   Each file is timed so often (default: 3), the fastest
-# counts. Where MDK_TEST_DATA names the folder of outside samples, real sequences are measured, too.
-# Needs a build, jq and python3, and a quiet machine.
+# coefficients, and how well the cost with the constants of cost.h ranks the bakes of each model.
+#
+#   docs/measure_cost.sh [-r ROUNDS] [bake | fit | MODEL…]
+#
+# ROUNDS: each file is timed so often (default: 3), the fastest counts. bake: only make the files, so that the
+# timing can be left to a quiet machine; fit: measure nothing, fit what was measured last; MODEL: measure these
+# alone, models not named keep their last times. Where MDK_TEST_DATA names the folder of outside samples, real
+# sequences are measured, too. Needs a build, jq and python3, and a quiet machine.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
-rounds=${1:-3}
-bin=build/release/bin
-[[ -x $bin/random_rays_bench ]] || { echo "there is no $bin/random_rays_bench; run ./run build first" >&2; exit 1; }
 # shellcheck source=docs/bench_models.sh
 source docs/bench_models.sh
+die() { printf 'measure_cost: %s\n' "$*" >&2; exit 1; }
+bin=build/release/bin
+[[ -x $bin/random_rays_bench && -x $mdprep ]] || die "there is no $bin/random_rays_bench; run ./run build first"
+command -v jq >/dev/null || die 'jq is missing; install the package jq'
+
+rounds=3 step=all
+if [[ ${1:-} == -r ]]; then
+  [[ ${2:-} =~ ^[1-9][0-9]*$ ]] || die '-r needs a number of rounds'
+  rounds=$2
+  shift 2
+fi
+all=(hand chicken cow dolphin ben)
+if [[ -n ${MDK_TEST_DATA:-} ]]; then all+=(real-cow real-crane real-elephant_gallop real-horse_gallop real-jumping); fi
+if [[ ${1:-} == bake || ${1:-} == fit ]]; then
+  step=$1
+  shift
+fi
+models=("${@:-${all[@]}}")
 work=build/release/cost
 mkdir -p "$work"
-models=(hand chicken cow dolphin ben)
-make_sources "${models[@]}"
-if [[ -n ${MDK_TEST_DATA:-} ]]; then models+=(real-cow real-crane real-elephant_gallop real-horse_gallop real-jumping); fi
+cluster_counts=(2 5 10 20 40 80 140)
 
-# input_of MODEL: what 'mdprep bake' takes for it.
-input_of() {
-  if [[ $1 == real-* ]]; then
-    echo "$MDK_TEST_DATA/sequences/${1#real-}.obj" "$MDK_TEST_DATA/sequences/${1#real-}.pc2"
-  else
-    source_of "$1"
-  fi
+bake_all() {
+  local model clusters
+  make_sources "${models[@]}"
+  for model in "${models[@]}"; do
+    for clusters in "${cluster_counts[@]}"; do
+      # shellcheck disable=SC2046
+      bake_model "$work" "$model-$clusters" $(source_of "$model") --clusters "$clusters" --segments 1
+    done
+  done
 }
 
-: >"$work/rows"
-for model in "${models[@]}"; do
-  for clusters in 2 5 10 20 40 80 140; do
+# measure MODEL: a row for each of its bakes: model, clusters, area, cost, clusters entered, ns a ray, tiles.
+measure() {
+  local model=$1 clusters file area cost tiles round count entered ray
+  for clusters in "${cluster_counts[@]}"; do
     file=$work/$model-$clusters.mdk
-    # shellcheck disable=SC2046
-    [[ -f $file ]] || $bin/mdprep bake $(input_of "$model") -o "$file" --clusters "$clusters" --segments 1 -q
-    area=$($bin/mdprep info "$file" --json --areas | jq .fuzzy_area)
-    $bin/mdprep bench "$file" --techniques fuzzy-bvh,refit-bvh --size 512x512 --frames 6 --rounds $((4 * rounds)) \
+    area=$("$mdprep" info "$file" --json --areas | jq .fuzzy_area)
+    cost=$(jq .sah_cost "$work/$model-$clusters.json")
+    "$mdprep" bench "$file" --techniques fuzzy-bvh,refit-bvh --size 512x512 --frames 6 --rounds $((4 * rounds)) \
       --threads 1 --judge none --json "$work/bench.json" --progress never -q >/dev/null
     tiles=$(jq '.models[0].techniques | map({key: .id, value: .trace_ms}) | from_entries
                 | .["fuzzy-bvh"] / .["refit-bvh"]' "$work/bench.json")
     for ((round = 0; round < rounds; ++round)); do
       read -r _ count entered ray _ < <($bin/random_rays_bench "$file")
-      echo "$model $count $area $entered $ray $tiles" | tee -a "$work/rows"
+      echo "$model $count $area $cost $entered $ray $tiles"
     done
   done
+}
+
+if [[ $step != fit ]]; then bake_all; fi
+if [[ $step == bake ]]; then exit; fi
+if [[ $step == all ]]; then
+  for model in "${models[@]}"; do
+    measure "$model" | tee "$work/$model.new"
+    mv "$work/$model.new" "$work/$model.rows"
+  done
+fi
+measured=()
+for model in "${all[@]}"; do
+  if [[ -f $work/$model.rows ]]; then measured+=("$work/$model.rows"); fi
 done
+cat "${measured[@]}" >"$work/rows"
 
 python3 - "$work/rows" <<'PYTHON'
 import sys
@@ -56,12 +90,12 @@ MAX_AREA = 40  # past it a decomposition is none, and most boxes lie behind hits
 best = {}
 for line in open(sys.argv[1]):
     model, *numbers = line.split()
-    clusters, area, entered, ray, tile = map(float, numbers)
+    clusters, area, cost, entered, ray, tile = map(float, numbers)
     if area < MAX_AREA:
         key = (model, clusters)
         old = best.get(key)
         if old is None or ray < old[2]:
-            best[key] = (area, entered, ray, tile)
+            best[key] = (area, entered, ray, tile, cost)
 
 
 def least_squares(rows, values):
@@ -78,24 +112,34 @@ def least_squares(rows, values):
     return [m[i][n] / m[i][i] for i in range(n)]
 
 
-def rank(values):
-    order = sorted(range(len(values)), key=lambda i: values[i])
-    ranks = [0] * len(values)
-    for place, i in enumerate(order):
-        ranks[i] = place
-    return ranks
+def rank_correlation(a, b):
+    """Spearman's; equal values share the mean of their ranks."""
+    def ranks(values):
+        return [sum(w < v for w in values) + (sum(w == v for w in values) - 1) / 2 - (len(values) - 1) / 2
+                for v in values]
+    x, y = ranks(a), ranks(b)
+    size = (sum(v * v for v in x) * sum(v * v for v in y)) ** 0.5
+    return sum(v * w for v, w in zip(x, y)) / size if size else 0
 
 
 models = sorted({model for model, _ in best})
 rows = [[float(model == m) for m in models] + [area, entered, clusters]
-        for (model, clusters), (area, entered, _, _) in best.items()]
+        for (model, clusters), (area, entered, *_) in best.items()]
 for what, column, unit in (("single rays", 2, "ns"), ("tiles", 3, "of the time through a refitted tree")):
     times = [row[column] for row in best.values()]
     fit = least_squares(rows, times)
     box, entering, cluster = fit[-3:]
     predicted = [sum(a * b for a, b in zip(row, fit)) for row in rows]
-    n = len(times)
-    distance = sum((a - b) ** 2 for a, b in zip(rank(times), rank(predicted)))
-    print(f"{what}, {n} bakes: a triangle box {box:.4g} {unit}; entering a cluster {entering / box:.2f} and each "
-          f"cluster {cluster / box:.3f} of that; rank correlation {1 - 6 * distance / (n * (n * n - 1)):.3f}")
+    print(f"{what}, {len(times)} bakes: a triangle box {box:.4g} {unit}; entering a cluster {entering / box:.2f} and each "
+          f"cluster {cluster / box:.3f} of that; rank correlation of fit and time {rank_correlation(times, predicted):.3f}")
+    # The cost alone, with the constants of cost.h: of one model's bakes the one with the lowest is taken.
+    alone = []
+    for m in models:
+        own = [row for (model, _), row in best.items() if model == m]
+        own_times, own_costs = [row[column] for row in own], [row[4] for row in own]
+        alone.append(rank_correlation(own_times, own_costs))
+        chosen = min(range(len(own)), key=lambda i: own_costs[i])
+        print(f"  {m}: rank correlation of cost and time {alone[-1]:.2f} over {len(own)} bakes; the cheapest takes "
+              f"{own_times[chosen] / min(own_times):.3f} of the quickest's time")
+    print(f"  mean {sum(alone) / len(alone):.2f}")
 PYTHON

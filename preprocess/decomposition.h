@@ -14,6 +14,7 @@
 #include "common/math/affine3.h"
 #include "common/motion/model.h"
 #include "common/motion/pose_sequence.h"
+#include "preprocess/options.h"
 
 namespace mdk {
 
@@ -117,6 +118,7 @@ struct Decomposition {
   KeyMaps maps;
   std::optional<QuantizedPoses> quantized;  ///< what the sequence's positions were decoded from
   std::vector<Segment> segments;
+  BetweenKeys between = BetweenKeys::kBound;
   std::vector<Aabb> pose_space_boxes;  ///< T in the members' order where a pose space is bounded
 };
 

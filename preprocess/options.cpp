@@ -55,6 +55,8 @@ void check_bones(const DecomposeOptions& options, const PoseSequence& sequence) 
     reject("the animation has no skeleton to pose: bake it with --sampling cycle");
   if (!(options.joint_limit_degrees >= 0 && options.joint_limit_degrees <= 180))
     refuse("the joints' limit must be from 0 to 180 degrees");
+  if (options.between == BetweenKeys::kIgnore)
+    refuse("a pose space holds between keys, too: leave --between-keys off out");
   if (options.segments > 1)
     refuse("a pose space has no time to be cut into segments: leave --segments out");
 }

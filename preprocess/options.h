@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 
 #include "common/motion/pose_sequence.h"
 
@@ -21,6 +22,12 @@ enum class PoseSampling {
   kPoseSpace,  ///< and each in which no joint is turned past its limit
 };
 
+/// Whether the curves between keys are looked at.
+enum class BetweenKeys {
+  kBound,   ///< boxes hold at every time
+  kIgnore,  ///< boxes hold at keys only, as in GFW06; the model says so
+};
+
 /// What the clusters of mode kMotion should be like.
 struct ClusterRequest {
   std::uint32_t clusters = 0;            ///< exactly so many; 0: as many as pay
@@ -29,12 +36,18 @@ struct ClusterRequest {
   std::optional<std::uint32_t> rest_key{};  ///< fixed rest pose; none: searched
 };
 
+/// The one that is requested, or none.
+inline std::span<const std::uint32_t> requested_rest_keys(const ClusterRequest& request) {
+  return request.rest_key ? std::span(&*request.rest_key, 1) : std::span<const std::uint32_t>();
+}
+
 struct DecomposeOptions : ClusterRequest {
   DecomposeMode mode = DecomposeMode::kMotion;
   PoseSampling sampling = PoseSampling::kCycle;  ///< with kBones only
   double joint_limit_degrees = 90;               ///< with kPoseSpace only; in [0, 180]
-  std::uint32_t segments = 0;      ///< exactly so many, or as many as there can be; 0: as many as
-                                   ///< pay
+  std::uint32_t segments = 0;  ///< exactly so many, or as many as there can be; 0: as many as
+                               ///< pay
+  BetweenKeys between = BetweenKeys::kBound;
   bool refine = true;              ///< improve maps towards the smallest boxes
   std::optional<double> quantize;  ///< key positions may be so far off, in rest pose diagonals, to
                                    ///< take less room; a rig that takes less still stays exact

@@ -14,12 +14,14 @@
 #include "preprocess/pose/pose_quantizer.h"
 #include "preprocess/pose/pose_space.h"
 #include "preprocess/pose/pose_table.h"
+#include "preprocess/pose/rest_pose.h"
 
 namespace mdk {
 namespace {
 
 constexpr std::size_t kBoneEntries = 2'000'000;  // keys (times vertices) that bones are chosen on
 constexpr std::size_t kMinBoneKeys = 10, kMaxBoneKeys = 200;
+constexpr double kRestSearch = 3e8;  // multiply-adds for the rest pose of bones
 
 SequenceSize size_of(const PoseSequence& sequence) {
   return {static_cast<double>(sequence.positions.size()),
@@ -66,7 +68,7 @@ Decomposition with_motion_clusters(const PoseSequence& sequence, const Decompose
     result.growth = cluster_by_boxes(sequence, options, unit, clustering);
   }
   result.members = members_of(sequence, result.growth);
-  const KeyMapRequest request{result.growth.rest_key, unit, options.refine};
+  const KeyMapRequest request{result.growth.rest_key, unit, options.refine, options.between};
   result.maps = options.stop_percent && !options.refine
                     ? fit_key_maps(sequence, result.members, request, paper.local_from_rest)
                     : fit_small_boxes(sequence, result.members, request,
@@ -77,16 +79,18 @@ Decomposition with_motion_clusters(const PoseSequence& sequence, const Decompose
 Decomposition with_bone_clusters(const PoseSequence& sequence, const DecomposeOptions& options,
                                  double unit) {
   Decomposition result;
-  result.growth.rest_key = options.rest_key.value_or(0);
   result.growth.stop_reason = StopReason::kBones;
   const std::size_t keys =
       std::clamp(kBoneEntries / std::max(1u, sequence.vertex_count), kMinBoneKeys, kMaxBoneKeys);
-  const PoseTable table = sample_poses(sequence, keys, result.growth.rest_key, unit);
+  const PoseTable table = sample_poses(sequence, keys, requested_rest_keys(options), unit);
   std::optional<PoseSpace> space;
   if (sequence.skeleton) space = pose_space_of(sequence);
-  BoneClusters clusters = assign_to_bones(sequence, table.keys, space ? &*space : nullptr);
+  BoneClusters clusters = assign_to_bones(sequence, table, space ? &*space : nullptr);
   static_cast<Assignment&>(result.growth) = clusters;
   result.members = members_of(sequence, result.growth);
+  result.growth.rest_key = options.rest_key ? *options.rest_key
+                                            : best_rest_keys(sequence, result.members, unit,
+                                                             {.max_multiply_adds = kRestSearch})[0];
   result.bones = choose_bone_bases(sequence, table, result.members, clusters.bones);
   result.maps = bone_key_maps(sequence, result.members, result.bones, result.growth.rest_key);
   return result;
@@ -152,7 +156,7 @@ std::vector<std::string> make_notes(const DecomposeOptions& options, const Model
                     " segments are more than the animation has intervals between keys: it got " +
                     std::to_string(model.segments.size()));
   if (options.quantize && model.poses.kind != PoseKind::kQuantized)
-    notes.push_back("poses stay exact: bones and morph targets take less room than quantised keys");
+    notes.emplace_back("poses stay exact: bones and morph targets take less room than quantised keys");
   return notes;
 }
 
@@ -208,9 +212,10 @@ DecomposeResult decompose(PoseSequence sequence, const DecomposeOptions& options
     parts.segments = {{0, sequence.key_count() - 1}};  // a pose space has no time
     parts.pose_space_boxes = pose_space_boxes(pose_space_of(sequence), parts.members, parts.bones);
   } else {
-    parts.segments =
-        choose_segments(sequence, parts.members, parts.maps.local_from_world, options.segments);
+    parts.segments = choose_segments(sequence, parts.members, parts.maps.local_from_world,
+                                     options.segments, options.between);
   }
+  parts.between = options.between;
 #ifndef NDEBUG
   validate(parts, sequence);
 #endif

@@ -36,7 +36,26 @@ KeyInterval locate_time(const ModelView& model, std::uint32_t clip_index, double
   // itself.
   if (s <= 0.0f) return at_key(clip.first_key + k0);
   if (s >= 1.0f) return at_key(clip.first_key + k1);
+  if (!model.holds_between_keys) return at_key(clip.first_key + (s > 0.5f ? k1 : k0));
   return {clip.first_key + k0, clip.first_key + k1, s};
+}
+
+double wrapped_time(double phase, double seconds, ClipWrap wrap) {
+  if (!std::isfinite(phase) || !(seconds > 0)) return 0;
+  switch (wrap) {
+    case ClipWrap::kOnce:
+      return std::clamp(phase, 0.0, seconds);
+    case ClipWrap::kLoop: {
+      if (phase >= 0 && phase < seconds) return phase;
+      const double rest = std::fmod(phase, seconds);  // exact
+      return rest < 0 ? rest + seconds : rest;
+    }
+    case ClipWrap::kPingPong: {
+      const double round = wrapped_time(phase, 2 * seconds, ClipWrap::kLoop);
+      return round <= seconds ? round : std::max(2 * seconds - round, 0.0);
+    }
+  }
+  return 0;
 }
 
 std::uint32_t clip_of_key(const ModelView& model, std::uint32_t key) {
@@ -44,6 +63,13 @@ std::uint32_t clip_of_key(const ModelView& model, std::uint32_t key) {
       model.clips.begin(), model.clips.end(), key,
       [](std::uint32_t value, const Clip& clip) { return value < clip.first_key; });
   return static_cast<std::uint32_t>(after - model.clips.begin()) - 1;
+}
+
+bool has_time(const ModelView& model, const KeyInterval& at) {
+  if (at.key0 >= model.key_count() || at.key1 >= model.key_count()) return false;
+  if (at.key0 == at.key1) return at.s == 0;
+  return at.key0 + 1 == at.key1 && at.s >= 0 && at.s < 1 &&
+         clip_of_key(model, at.key0) == clip_of_key(model, at.key1);
 }
 
 std::uint32_t segment_of(const ModelView& model, const KeyInterval& at) {

@@ -81,9 +81,10 @@ using PoseStorage = PoseLists<OwnedList, ScratchList>;
 template <template <class> class List, template <class> class LargeList = List>
 struct ModelLists {
   std::uint32_t vertex_count = 0;
-  std::uint32_t rest_key = 0;  ///< the pose the local bases were fitted to (GFW06 §3.3)
-  Aabb bounds;                 ///< holds the mesh at every time
-  double rest_diagonal = 0;    ///< of the rest pose's box: the unit of residuals in reports
+  std::uint32_t rest_key = 0;      ///< the pose the local bases were fitted to (GFW06 §3.3)
+  bool holds_between_keys = true;  ///< else fuzzy boxes bound keys only, and only they are traced
+  Aabb bounds;                     ///< holds the mesh at every time
+  double rest_diagonal = 0;        ///< of the rest pose's box: the unit of residuals in reports
 
   List<Clip> clips;
   List<double> key_times;  ///< F
@@ -151,6 +152,7 @@ template <class To, class From>
 void assign_model(To& to, const From& from) {
   to.vertex_count = from.vertex_count;
   to.rest_key = from.rest_key;
+  to.holds_between_keys = from.holds_between_keys;
   to.bounds = from.bounds;
   to.rest_diagonal = from.rest_diagonal;
   to.poses.kind = from.poses.kind;
@@ -200,11 +202,17 @@ struct ModelStorage : ModelLists<OwnedList, ScratchList> {
 };
 
 /// The interval of `clip` (an index) that holds `seconds`; times outside the clip are clamped to
-/// it. Cost: O(log keys).
+/// it. Of a model that does not hold between keys, the nearest key. Cost: O(log keys).
 KeyInterval locate_time(const ModelView& model, std::uint32_t clip, double seconds);
+
+/// A time brought into a clip of D seconds: in [0, D], 0 for a phase that is not finite.
+double wrapped_time(double phase, double seconds, ClipWrap wrap);
 
 /// Exactly at a key.
 inline KeyInterval at_key(std::uint32_t key) { return {key, key, 0.0f}; }
+
+/// Whether locate_time() or at_key() may give this.
+bool has_time(const ModelView& model, const KeyInterval& time);
 
 /// The segment whose boxes hold at a moment; at a key that two segments share, the earlier one.
 /// Cost: O(log segments).

@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "common/motion/posed_mesh.h"
 #include "mdk/error.h"
 
 namespace mdk {
@@ -40,6 +41,17 @@ std::uint32_t Model::clip_count() const {
   return static_cast<std::uint32_t>(data_->view.clips.size());
 }
 
+std::uint32_t Model::cluster_count() const { return data_->view.cluster_count(); }
+std::uint32_t Model::material_count() const {
+  return static_cast<std::uint32_t>(data_->view.appearance.materials.size());
+}
+
+std::array<float, 4> Model::material_color(std::uint32_t index) const {
+  require_index(index, material_count(), "material");
+  const float* color = data_->view.appearance.materials[index].base_color;
+  return {color[0], color[1], color[2], color[3]};
+}
+
 ClipInfo Model::clip(std::uint32_t index) const {
   require_index(index, clip_count(), "clip");
   const Clip& clip = data_->view.clips[index];
@@ -63,9 +75,39 @@ KeyInterval Model::locate_time(std::uint32_t clip, double seconds) const {
   if (!std::isfinite(seconds)) throw Error(ErrorCode::kUsage, "a time must be finite, in seconds");
   return mdk::locate_time(data_->view, clip, seconds);
 }
+KeyInterval Model::locate_time(std::uint32_t index, double seconds, ClipWrap wrap) const {
+  require_index(index, clip_count(), "clip");
+  if (!std::isfinite(seconds)) throw Error(ErrorCode::kUsage, "a time must be finite, in seconds");
+  return mdk::locate_time(
+      data_->view, index,
+      wrapped_time(seconds, data_->view.clip_seconds(data_->view.clips[index]), wrap));
+}
 KeyInterval Model::at_key(std::uint32_t key) const {
   require_index(key, key_count(), "key");
   return mdk::at_key(key);
+}
+
+double Model::key_time(std::uint32_t key) const {
+  require_index(key, key_count(), "key");
+  return data_->view.key_times[key];
+}
+
+std::vector<Vec3f> Model::vertices(const KeyInterval& time) const {
+  const ModelView& view = data_->view;
+  if (!has_time(view, time))
+    throw Error(ErrorCode::kUsage, "the time is none of the model's: keys " +
+                                       std::to_string(time.key0) + " and " +
+                                       std::to_string(time.key1));
+  PosedMesh mesh(view);
+  mesh.set_time(time);
+  const auto positions = mesh.positions();
+  return {positions.begin(), positions.end()};
+}
+
+std::array<std::uint32_t, 3> Model::triangle(std::uint32_t triangle) const {
+  require_index(triangle, triangle_count(), "triangle");
+  const Triangle& t = data_->view.triangles[triangle];
+  return {t.v[0], t.v[1], t.v[2]};
 }
 
 std::uint32_t Model::source_triangle(std::uint32_t triangle) const {

@@ -294,24 +294,6 @@ void extend_by_sweep(Aabbd& box, double& slack, const PathStretch& stretch, doub
 
 }  // namespace
 
-double wrapped_time(double phase, double seconds, ClipWrap wrap) {
-  if (!std::isfinite(phase) || !(seconds > 0)) return 0;
-  switch (wrap) {
-    case ClipWrap::kOnce:
-      return std::clamp(phase, 0.0, seconds);
-    case ClipWrap::kLoop: {
-      if (phase >= 0 && phase < seconds) return phase;
-      const double rest = std::fmod(phase, seconds);  // exact
-      return rest < 0 ? rest + seconds : rest;
-    }
-    case ClipWrap::kPingPong: {
-      const double round = wrapped_time(phase, 2 * seconds, ClipWrap::kLoop);
-      return round <= seconds ? round : std::max(2 * seconds - round, 0.0);
-    }
-  }
-  return 0;
-}
-
 Affine3f key_map(const PathKey& key) {
   return to_float(composed(mdk::to_double(key.translation), rotation_of(key),
                            mdk::to_double(key.scale)));

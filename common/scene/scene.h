@@ -198,9 +198,6 @@ class Stage {
   std::vector<double> path_unevenness_;
 };
 
-/// clip_time() for a clip of D seconds: in [0, D], 0 for a phase that is not finite.
-double wrapped_time(double phase, double seconds, ClipWrap wrap);
-
 /// What a key does, composed in double and rounded once.
 Affine3f key_map(const PathKey& key);
 

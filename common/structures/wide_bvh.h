@@ -1,7 +1,7 @@
 // Hierarchies whose nodes hold the boxes of up to eight children side by side, so that a tile tests
 // them all at once. WideBvh: leaves hold up to sixteen items, as many as are tested together; made
-// by collapsing a binary Bvh; follows moving items by refitting. TopLevel: one box a leaf, made
-// anew for every frame.
+// by collapsing a binary Bvh; follows moving items by refitting and rotations. TopLevel: one box a
+// leaf, made anew for every frame.
 #pragma once
 
 #include <cstdint>
@@ -37,9 +37,10 @@ class WideBvhChild {
 
 /// Rows of `bounds`: low x, high x, low y, high y, low z, high z; one column per child. Columns
 /// from `count` on repeat column 0, so that they hold numbers.
-struct alignas(64) WideBvhNode {
-  float bounds[6][kBvhWidth];
-  WideBvhChild child[kBvhWidth];
+template <std::uint32_t kWidth>
+struct alignas(64) WideNode {
+  float bounds[6][kWidth];
+  WideBvhChild child[kWidth];
   std::uint32_t count;
 
   Aabb box(std::uint32_t c) const {
@@ -59,15 +60,18 @@ struct alignas(64) WideBvhNode {
   }
   /// Fills the columns no child needs; to be called after the last set_box().
   void pad() {
-    for (std::uint32_t c = count; c < kBvhWidth; ++c) {
+    for (std::uint32_t c = count; c < kWidth; ++c) {
       set_box(c, box(0));
       child[c] = child[0];
     }
   }
 };
 
+using WideBvhNode = WideNode<kBvhWidth>;
+
 /// Node 0 is the root, also of a single leaf; every child node has a higher index than its parent,
-/// and leaves are numbered in the order the nodes list them. No items: no nodes.
+/// and leaves are numbered in the order the nodes list them, until they are rotated. No items: no
+/// nodes.
 struct WideBvh {
   std::vector<WideBvhNode> nodes;
   std::vector<std::uint32_t> items;  ///< kLeafItems per leaf, the last ones kNoItem where unused
@@ -93,6 +97,13 @@ WideBvh build_wide_bvh(std::span<const Aabb> boxes, int bins);
 
 /// New boxes for the same items, bottom up. `boxes` has one per item. Cost: O(N); runs in parallel.
 void refit_wide_bvh(WideBvh& bvh, std::span<const Aabb> boxes);
+
+/// Tree rotations (Kensler 2008), for nodes of eight: one child of a node changes places with a
+/// grandchild under another child, wherever that makes the other child's box smaller, bottom up.
+/// What hangs together in this pose comes together; leaves keep their items and numbers. Never
+/// raises sah_cost(), nor makes the tree deeper than kMaxBvhDepth. Returns how many changed places.
+/// Cost: O(nodes), some tenths of a build.
+std::size_t rotate_wide_bvh(WideBvh& bvh);
 
 /// Expected boxes and leaves hit by a ray that hits the root's box (SAH). A root without area
 /// counts as hit whole. Cost: O(nodes).

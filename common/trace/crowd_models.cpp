@@ -7,15 +7,35 @@
 
 namespace mdk {
 
-CrowdModel::CrowdModel(const ModelView& model)
-    : tracer_(model),
+CrowdModel::CrowdModel(const ModelView& model, std::size_t max_pose_bytes)
+    : tracer_(model, max_pose_bytes),
       own_bytes_(tracer_.bytes()),
-      keys_(std::make_unique<KeyFacts[]>(model.key_count())) {}
+      keys_(std::make_unique<KeyFacts[]>(model.key_count())) {
+  // By the model alone, so that a picture does not depend on how much may be kept.
+  constexpr double kMostNormals = 4 << 20;
+  if (static_cast<double>(model.key_count()) * model.vertex_count <= kMostNormals) return;
+  first_corner_.assign(std::size_t{model.vertex_count} + 1, 0);
+  for (const Triangle& t : model.triangles)
+    for (const std::uint32_t v : t.v) ++first_corner_[v + 1];
+  for (std::size_t v = 0; v < model.vertex_count; ++v) first_corner_[v + 1] += first_corner_[v];
+  ring_.resize(first_corner_.back());
+  std::vector<std::uint32_t> next(first_corner_.begin(), first_corner_.end() - 1);
+  for (std::uint32_t t = 0; t < model.triangle_count(); ++t)
+    for (const std::uint32_t v : model.triangles[t].v) ring_[next[v]++] = t;
+  own_bytes_ += (first_corner_.size() + ring_.size()) * sizeof(std::uint32_t);
+}
+
+std::vector<Vec3f> CrowdModel::positions(std::uint32_t key) const {
+  std::vector<Vec3f> decoded(model().vertex_count);
+  decode_pose(model(), key, {0, model().vertex_count}, decoded);
+  return decoded;
+}
 
 const CrowdModel::KeyFacts& CrowdModel::find(std::uint32_t key) const {
   KeyFacts& facts = keys_[key];
   std::call_once(facts.once, [&] {
-    const Vec3f* at = tracer_.rays().poses->key(key);
+    const std::vector<Vec3f> decoded = positions(key);
+    const Vec3f* at = decoded.data();
     float longest_of_all = 0;
     for (const Cluster& cluster : model().clusters) {
       double longest = 0;
@@ -39,7 +59,8 @@ std::span<const Vec3f> CrowdModel::normals(std::uint32_t key) const {
   KeyFacts& facts = keys_[key];
   if (!facts.has_normals.load(std::memory_order_acquire))
     std::call_once(facts.normals_once, [&] {
-      const Vec3f* at = tracer_.rays().poses->key(key);
+      const std::vector<Vec3f> decoded = positions(key);
+      const Vec3f* at = decoded.data();
       facts.normals.resize(model().vertex_count);
       for (const Triangle& t : model().triangles) {
         const Vec3f& a = at[t.v[0]];

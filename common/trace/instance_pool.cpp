@@ -72,7 +72,7 @@ InstanceRays make_instance_rays(const CrowdFrame& frame, std::uint32_t instance)
   r.instance = instance;
   r.at = r.time = stage.key_interval(instance, frame.time);
   r.model = &crowd.tracer().rays();
-  r.segment = crowd.tracer().segment(r.at);
+  r.segment = crowd.tracer().segment_at(r.at);
   r.vertices = {nullptr, nullptr, r.at.s};
   const Aabb box = model_box(model, r.at);
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -213,7 +213,14 @@ void InstancePool::begin_frame(const CrowdFrame& frame) {
   current_ = nullptr;
 }
 
+void InstancePool::leave() {
+  if (held_ == nullptr) return;
+  held_->release(held_time_);
+  held_ = nullptr;
+}
+
 const InstanceRays* InstancePool::enter(std::uint32_t instance) {
+  leave();
   Place& place = places_[instance & (places_.size() - 1)];
   current_ = &place;
   if (place.serial != serial_ || place.rays.instance != instance) {
@@ -222,15 +229,16 @@ const InstanceRays* InstancePool::enter(std::uint32_t instance) {
     place.rays.instance = instance;
     if (place.is_shown) {
       place.rays = make_instance_rays(*frame_, instance);
-      const KeyPoses& poses = *place.rays.model->poses;
-      place.rays.vertices = {poses.key(place.rays.at.key0), poses.key(place.rays.at.key1),
-                             place.rays.at.s};
       if (frame_->refitted != nullptr) frame_->refitted->replace(place.rays);
       ++posed_;
     }
     place.forms_of = kNoHit;
   }
-  return place.is_shown ? &place.rays : nullptr;
+  if (!place.is_shown) return nullptr;
+  held_ = frame_->models[frame_->stage->role(instance).model]->tracer().rays().poses;
+  held_time_ = place.rays.time;
+  place.rays.vertices = held_->acquire(held_time_);
+  return &place.rays;
 }
 
 void InstancePool::begin_forms() {

@@ -45,6 +45,9 @@ class InstancePool final : public InstanceSource {
   void begin_frame(const CrowdFrame& frame);
 
   const InstanceRays* enter(std::uint32_t instance) override;
+  /// Lets go of the key poses of the instance entered last; to be called before the thread does
+  /// anything else with its model.
+  void leave();
   const FrustumForms& model_forms() override;
   const FrustumForms& cluster_forms(std::uint32_t cluster) override;
 
@@ -67,6 +70,8 @@ class InstancePool final : public InstanceSource {
   std::uint64_t serial_ = 0, posed_ = 0;
   std::vector<Place> places_;  ///< a power of two
   Place* current_ = nullptr;
+  const KeyPoses* held_ = nullptr;
+  KeyInterval held_time_;
 };
 
 }  // namespace mdk

@@ -4,30 +4,118 @@
 #include <cmath>
 #include <numeric>
 #include <span>
+#include <thread>
+#include <utility>
 
 #include "common/base/parallel.h"
 
 namespace mdk {
 
-KeyPoses::KeyPoses(const ModelView& model)
-    : model_(&model), slots_(std::make_unique<Slot[]>(model.key_count())) {
-  if (model.poses.kind != PoseKind::kKeyPositions) return;
-  // Behind the last key there may be nothing to read.
-  for (std::uint32_t key = 0; key + 1 < model.key_count(); ++key)
-    slots_[key].ready = model.poses.key_positions.data() + std::size_t{key} * model.vertex_count;
+KeyPoses::KeyPoses(const ModelView& model, std::vector<std::uint32_t> order, std::size_t max_bytes)
+    : model_(&model), order_(std::move(order)) {
+  const std::uint32_t keys = model.key_count();
+  const std::size_t most = max_bytes / ((order_.size() + 1) * sizeof(Vec3f));
+  if (most >= keys) {
+    kept_ = std::make_unique<Kept[]>(keys);
+    return;
+  }
+  place_count_ = std::max(most, 2 * static_cast<std::size_t>(thread_count()));
+  places_ = std::make_unique<Place[]>(place_count_);
+  place_of_key_ = std::make_unique<std::atomic<std::uint32_t>[]>(keys);
+  for (std::uint32_t key = 0; key < keys; ++key)
+    place_of_key_[key] = static_cast<std::uint32_t>(place_count_);
+}
+
+void KeyPoses::make_room(std::vector<Vec3f>& positions) const {
+  if (!positions.empty()) return;
+  positions.resize(order_.size() + 1);
+  decoded_.fetch_add(positions.size() * sizeof(Vec3f), std::memory_order_relaxed);
+}
+
+void KeyPoses::decode_into(std::uint32_t key, std::vector<Vec3f>& positions) const {
+  const bool has_positions = model_->poses.kind == PoseKind::kKeyPositions;
+  std::vector<Vec3f> decoded(has_positions ? 0 : model_->vertex_count);
+  const Vec3f* all = decoded.data();
+  if (has_positions) {
+    all = model_->poses.key_positions.data() + std::size_t{key} * model_->vertex_count;
+  } else {
+    decode_pose(*model_, key, {0, model_->vertex_count}, decoded);
+  }
+  for (std::size_t i = 0; i < order_.size(); ++i) positions[i] = all[order_[i]];
 }
 
 const Vec3f* KeyPoses::decode(std::uint32_t key) const {
-  Slot& slot = slots_[key];
+  Kept& kept = kept_[key];
   // In one thread: a parallel loop in here might pick up a ray that waits for this very key.
-  std::call_once(slot.once, [&] {
-    slot.positions.resize(std::size_t{model_->vertex_count} + 1);
-    decode_pose(*model_, key, {0, model_->vertex_count},
-                std::span(slot.positions).first(model_->vertex_count));
-    decoded_.fetch_add(slot.positions.size() * sizeof(Vec3f), std::memory_order_relaxed);
-    slot.ready.store(slot.positions.data(), std::memory_order_release);
+  std::call_once(kept.once, [&] {
+    make_room(kept.positions);
+    decode_into(key, kept.positions);
+    kept.ready.store(kept.positions.data(), std::memory_order_release);
   });
-  return slot.positions.data();
+  return kept.positions.data();
+}
+
+/// Null where the key has no place, or is about to lose it.
+const Vec3f* KeyPoses::hold_if_there(std::uint32_t key) const {
+  const std::uint32_t at = place_of_key_[key].load(std::memory_order_acquire);
+  if (at == place_count_) return nullptr;
+  Place& place = places_[at];
+  const std::uint32_t holders = place.holders.fetch_add(1, std::memory_order_acq_rel);
+  if ((holders & kBusy) == 0 && place.key.load(std::memory_order_acquire) == key) {
+    place.was_used.store(true, std::memory_order_relaxed);
+    return place.positions.data();
+  }
+  place.holders.fetch_sub(1, std::memory_order_acq_rel);
+  return nullptr;
+}
+
+/// Null where every place is held.
+const Vec3f* KeyPoses::hold(std::uint32_t key) const {
+  if (const Vec3f* positions = hold_if_there(key)) return positions;
+  const std::lock_guard lock(changing_);
+  if (const Vec3f* positions = hold_if_there(key)) return positions;
+  for (std::size_t turn = 0; turn < 2 * place_count_; ++turn) {
+    const std::size_t at = next_place_;
+    next_place_ = (next_place_ + 1) % place_count_;
+    Place& place = places_[at];
+    make_room(place.positions);
+    std::uint32_t none = 0;
+    if (place.was_used.exchange(false, std::memory_order_relaxed) ||
+        !place.holders.compare_exchange_strong(none, kBusy, std::memory_order_acq_rel))
+      continue;
+    const std::uint32_t old = place.key.exchange(kNoKey);
+    if (old != kNoKey)
+      place_of_key_[old].store(static_cast<std::uint32_t>(place_count_), std::memory_order_release);
+    decode_into(key, place.positions);
+    place.key.store(key, std::memory_order_release);
+    place_of_key_[key].store(static_cast<std::uint32_t>(at), std::memory_order_release);
+    place.was_used.store(true, std::memory_order_relaxed);
+    place.holders.fetch_sub(kBusy - 1, std::memory_order_acq_rel);  // held once, by the caller
+    return place.positions.data();
+  }
+  return nullptr;
+}
+
+void KeyPoses::let_go(std::uint32_t key) const {
+  // It keeps its place while it is held.
+  places_[place_of_key_[key].load(std::memory_order_acquire)].holders.fetch_sub(
+      1, std::memory_order_acq_rel);
+}
+
+void KeyPoses::hold_both(const KeyInterval& at, const Vec3f*& from, const Vec3f*& to) const {
+  for (;;) {
+    from = hold(at.key0);
+    to = at.key1 == at.key0 ? from : from == nullptr ? nullptr : hold(at.key1);
+    if (to != nullptr) return;
+    // Whoever waits holds nothing, so that others can go on.
+    if (from != nullptr) let_go(at.key0);
+    std::this_thread::yield();
+  }
+}
+
+void KeyPoses::let_go_both(const KeyInterval& at) const {
+  let_go(at.key0);
+  if (at.key1 != at.key0) let_go(at.key1);
 }
 
 namespace {

@@ -12,6 +12,8 @@
 namespace mdk {
 namespace {
 
+constexpr std::uint32_t kNowhere = 0xffffffff;
+
 /// Of each cluster, in its basis, at all times.
 std::vector<Aabb> local_bounds(const ModelView& model) {
   std::vector<Aabb> bounds(model.cluster_count());
@@ -22,19 +24,53 @@ std::vector<Aabb> local_bounds(const ModelView& model) {
   return bounds;
 }
 
+std::vector<RaySegment> make_segments(const ModelView& model) {
+  std::vector<RaySegment> segments;
+  for (std::uint32_t s = 0; s < model.segment_count(); ++s) segments.emplace_back(model, s);
+  return segments;
+}
+
+/// Numbers vertices in the order in which blocks use them, and renames them in the blocks: what a
+/// block fetches stands mostly side by side.
+std::vector<std::uint32_t> number_vertices(const ModelView& model,
+                                           std::vector<RaySegment>& segments) {
+  std::vector<std::uint32_t> place(model.vertex_count, kNowhere);
+  std::uint32_t next = 0;
+  for (RaySegment& segment : segments)
+    segment.for_each_vertex([&](std::uint32_t& vertex) {
+      if (place[vertex] == kNowhere) place[vertex] = next++;
+      vertex = place[vertex];
+    });
+  return place;
+}
+
+/// Which vertex has each place.
+std::vector<std::uint32_t> inverted(const std::vector<std::uint32_t>& place) {
+  std::vector<std::uint32_t> order(place.size() -
+                                   static_cast<std::size_t>(std::ranges::count(place, kNowhere)));
+  for (std::uint32_t v = 0; v < place.size(); ++v)
+    if (place[v] != kNowhere) order[place[v]] = v;
+  return order;
+}
+
 }  // namespace
 
 struct RayTracer::Data {
-  explicit Data(const ModelView& m)
-      : model(m), poses(model), top(model), maps(model, local_bounds(model)) {
-    for (std::uint32_t s = 0; s < model.segment_count(); ++s) segments.emplace_back(model, s);
+  Data(const ModelView& m, std::size_t max_pose_bytes)
+      : model(m),
+        segments(make_segments(model)),
+        place_of_vertex(number_vertices(model, segments)),
+        poses(model, inverted(place_of_vertex), max_pose_bytes),
+        top(model),
+        maps(model, local_bounds(model)) {
     for (const RaySegment& segment : segments)
       trees.insert(trees.end(), segment.trees().begin(), segment.trees().end());
     find_times();
     world_trees = std::make_unique<std::atomic<const WorldTree*>[]>(model.segment_count());
     for (const Aabb& box : model.key_boxes)
       key_boxes.push_back({{box.lo.x, box.lo.y, box.lo.z, 0}, {box.hi.x, box.hi.y, box.hi.z, 0}});
-    rays = {.center = model.bounds.center(),
+    rays = {.bounds = model.bounds,
+            .center = model.bounds.center(),
             .diagonal = diagonal(model.bounds),
             .clusters = model.cluster_count(),
             .top_nodes = top.nodes(),
@@ -75,7 +111,7 @@ struct RayTracer::Data {
   const WorldTree& world_tree(std::uint32_t segment, const VertexSource& source) {
     const WorldTree* found = world_trees[segment].load(std::memory_order_acquire);
     if (found != nullptr) return *found;
-    auto made = std::make_unique<const WorldTree>(model, source);
+    auto made = std::make_unique<const WorldTree>(model, place_of_vertex, source);
     if (world_trees[segment].compare_exchange_strong(found, made.get(),
                                                      std::memory_order_acq_rel)) {
       moment_bytes += made->bytes();
@@ -91,10 +127,11 @@ struct RayTracer::Data {
   };
 
   const ModelView model;
+  std::vector<RaySegment> segments;
+  std::vector<std::uint32_t> place_of_vertex;  ///< in poses; kNowhere where nothing uses it
   KeyPoses poses;
   TopTree top;
   KeyMaps maps;
-  std::vector<RaySegment> segments;
   std::vector<RayTree> trees;
   std::vector<KeyTimes> key_times;
   std::vector<KeyBox> key_boxes;
@@ -103,7 +140,8 @@ struct RayTracer::Data {
   RayModel rays;
 };
 
-RayTracer::RayTracer(const ModelView& model) : data_(std::make_unique<Data>(model)) {}
+RayTracer::RayTracer(const ModelView& model, std::size_t max_pose_bytes)
+    : data_(std::make_unique<Data>(model, max_pose_bytes)) {}
 RayTracer::~RayTracer() = default;
 
 const ModelView& RayTracer::model() const { return data_->model; }
@@ -114,20 +152,41 @@ bool RayTracer::has_time(const KeyInterval& at) const {
   return at.key0 + 1 == at.key1 && at.s >= 0 && at.s < 1 && data_->key_times[at.key1].has_before;
 }
 
-const RayModel& RayTracer::rays() const { return data_->rays; }
-
-std::uint32_t RayTracer::segment(const KeyInterval& time) const { return data_->segment_of(time); }
-
 std::size_t RayTracer::bytes() const {
   std::size_t sum = data_->moment_bytes.load() + data_->poses.bytes() + data_->top.bytes() +
                     data_->maps.bytes() + data_->trees.size() * sizeof(RayTree) +
+                    data_->place_of_vertex.size() * sizeof(std::uint32_t) +
                     data_->key_times.size() * sizeof(Data::KeyTimes);
   for (const RaySegment& segment : data_->segments) sum += segment.bytes();
   return sum;
 }
 
+const RayModel& RayTracer::rays() const { return data_->rays; }
+
+std::uint32_t RayTracer::segment_at(const KeyInterval& time) const {
+  return data_->segment_of(time);
+}
+
+HeldVertices::HeldVertices(const RayTracer& tracer, const KeyInterval& time)
+    : tracer_(tracer),
+      time_(time),
+      source_(tracer.data_->poses.acquire(time)),
+      places_(tracer.data_->poses.places()) {}
+HeldVertices::~HeldVertices() { tracer_.data_->poses.release(time_); }
+
 QueryHit RayTracer::trace(const QueryRay& ray, const KeyInterval& time, RayAim aim) const {
   return trace_ray(data_->rays, ray, time, data_->segment_of(time), aim);
+}
+
+void RayTracer::trace(const QueryRay* rays, const KeyInterval* times, RayAim aim, QueryHit* hits,
+                      std::size_t count) const {
+  constexpr std::size_t kSome = 64;
+  std::uint32_t segments[kSome];
+  for (std::size_t first = 0; first < count; first += kSome) {
+    const std::size_t some = std::min(kSome, count - first);
+    for (std::size_t i = 0; i < some; ++i) segments[i] = data_->segment_of(times[first + i]);
+    trace_rays(data_->rays, rays + first, times + first, segments, aim, hits + first, some);
+  }
 }
 
 struct RayMoment::Posed {
@@ -164,8 +223,9 @@ QueryHit RayMoment::trace(const QueryRay& ray, RayAim aim) const {
 
 const RayMoment::Posed* RayMoment::make_posed() const {
   RayTracer::Data& data = *tracer_.data_;
-  const VertexSource source{data.poses.key(time_.key0), data.poses.key(time_.key1), time_.s};
+  const VertexSource source = data.poses.acquire(time_);
   PosedWorldTree tree(data.world_tree(data.segment_of(time_), source), source);
+  data.poses.release(time_);
   const std::size_t bytes = tree.bytes();
   const Posed* posed = new Posed{std::move(tree), bytes};
   data.moment_bytes += bytes;

@@ -17,7 +17,9 @@ namespace mdk {
 class RayTracer {
  public:
   /// Cost: O(segments * T log T); runs in parallel.
-  explicit RayTracer(const ModelView& model);
+  /// `max_pose_bytes`: what decoded key poses may take; two of them are kept in any case.
+  explicit RayTracer(const ModelView& model,
+                     std::size_t max_pose_bytes = RayQueryOptions().max_pose_bytes);
   ~RayTracer();
   RayTracer(const RayTracer&) = delete;
   RayTracer& operator=(const RayTracer&) = delete;
@@ -31,18 +33,52 @@ class RayTracer {
   /// keys it needs are there.
   QueryHit trace(const QueryRay& ray, const KeyInterval& time, RayAim aim) const;
 
-  /// For kernels that go the same way: what rays go through, and the segment of a time, one of
-  /// has_time().
+  /// The same for many rays, each at its own time: hits[i] is that of rays[i] at times[i].
+  void trace(const QueryRay* rays, const KeyInterval* times, RayAim aim, QueryHit* hits,
+             std::size_t count) const;
+
+  // For other questions that go down the same hierarchies (mesh_queries.h, surface.h).
   const RayModel& rays() const;
-  std::uint32_t segment(const KeyInterval& time) const;
+  /// The segment whose hierarchies hold at one of the model's times.
+  std::uint32_t segment_at(const KeyInterval& time) const;
 
   /// What it holds now, moments included.
   std::size_t bytes() const;
 
  private:
   friend class RayMoment;
+  friend class HeldVertices;
   struct Data;
   std::unique_ptr<Data> data_;
+};
+
+/// Where the vertices are at a time, by their numbers in the model, while this lives. A thread may
+/// hold one time, and trace none meanwhile. Cost: O(1), but decoding keys that are not there; the
+/// first one of a tracer O(vertices).
+class HeldVertices {
+ public:
+  HeldVertices(const RayTracer& tracer, const KeyInterval& time);
+  ~HeldVertices();
+  HeldVertices(const HeldVertices&) = delete;
+  HeldVertices& operator=(const HeldVertices&) = delete;
+
+  Vec3f position(std::uint32_t vertex) const { return source_.position(places_[vertex]); }
+  /// From the first key to the second.
+  Vec3d moved(std::uint32_t vertex) const {
+    const std::uint32_t i = places_[vertex];
+    return to_double(source_.to[i]) - to_double(source_.from[i]);
+  }
+  /// For kernels: vertices of a triangle as they stand in source().
+  const VertexSource& source() const { return source_; }
+  Triangle placed(const Triangle& t) const {
+    return {{places_[t.v[0]], places_[t.v[1]], places_[t.v[2]]}};
+  }
+
+ private:
+  const RayTracer& tracer_;
+  const KeyInterval time_;
+  VertexSource source_;
+  const std::uint32_t* places_;
 };
 
 /// One time of a tracer, for many rays: the first ones are traced as at a time of their own; when

@@ -33,7 +33,9 @@ RefittedInstances::Refitted::Refitted(const WorldTree& topology, const VertexSou
     std::fill_n(boxes.bounds[2 * axis], kTopWidth, lo);
     std::fill_n(boxes.bounds[2 * axis + 1], kTopWidth, hi);
   }
-  model = {.center = scene.center,
+  model = {.bounds = {{scene.bounds.lo[0], scene.bounds.lo[1], scene.bounds.lo[2]},
+                      {scene.bounds.hi[0], scene.bounds.hi[1], scene.bounds.hi[2]}},
+           .center = scene.center,
            .diagonal = scene.diagonal,
            .clusters = 1,
            .top_nodes = 1,
@@ -51,23 +53,30 @@ RefittedInstances::Refitted::Refitted(const WorldTree& topology, const VertexSou
 
 void RefittedInstances::update(const Stage& stage,
                                std::span<const std::unique_ptr<CrowdModel>> models, double time) {
-  const auto source_of = [&](const CrowdModel& crowd, const KeyInterval& at) {
+  // Calls use(source) while the poses of a time are held.
+  const auto with_source = [&](const CrowdModel& crowd, const KeyInterval& at, const auto& use) {
     const KeyPoses& poses = *crowd.tracer().rays().poses;
-    return VertexSource{poses.key(at.key0), poses.key(at.key1), at.s};
+    use(poses.acquire(at));
+    poses.release(at);
   };
   if (topologies_.empty())
     for (const auto& crowd : models) {
       const ModelView& model = crowd->model();
-      topologies_.push_back(
-          std::make_unique<WorldTree>(model, source_of(*crowd, at_key(model.rest_key))));
+      const std::uint32_t* places = crowd->tracer().rays().poses->places();
+      with_source(*crowd, at_key(model.rest_key), [&](const VertexSource& source) {
+        topologies_.push_back(std::make_unique<WorldTree>(
+            model, std::vector<std::uint32_t>(places, places + model.vertex_count), source));
+      });
     }
   instances_.resize(stage.instance_count());
   parallel_chunks(instances_.size(), 4, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const auto instance = static_cast<std::uint32_t>(i);
       const std::uint32_t model = stage.role(instance).model;
-      instances_[i] = std::make_unique<Refitted>(
-          *topologies_[model], source_of(*models[model], stage.key_interval(instance, time)));
+      with_source(*models[model], stage.key_interval(instance, time),
+                  [&](const VertexSource& source) {
+                    instances_[i] = std::make_unique<Refitted>(*topologies_[model], source);
+                  });
     }
   });
 }

@@ -5,11 +5,13 @@
 #include <algorithm>
 #include <map>
 #include <numbers>
+#include <optional>
 #include <string>
 
 #include "common/base/error.h"
 #include "common/base/parallel.h"
 #include "common/base/stopwatch.h"
+#include "common/trace/affine_copy.h"
 
 namespace mdk {
 namespace {
@@ -30,6 +32,8 @@ void check_request(const FrameRequest& request) {
              std::to_string(kMaxOcclusionRays));
   refuse(!request.shutter.empty() && request.shutter.size() != request.samples,
          "a shutter needs a moment for each sample");
+  refuse(!request.shutter.empty() && request.shading == ShadingMode::kAffine,
+         "the shading mode affine shows one moment: leave the shutter closed");
 }
 
 /// Sample `i` of every pixel: the centre first, then spread evenly over the pixel.
@@ -68,10 +72,16 @@ struct Renderer::State {
   FrameStats stats;
   double posing_seen = 0;  ///< of the mesh's posing_seconds(), in stats
 
+  std::optional<AffineCopy> affine;          ///< once it was asked for
+  std::unique_ptr<Renderer> affine_picture;  ///< of the copy
+  bool shows_affine = false;                 ///< whether that is the last picture
+
   double without_posing(double seconds);
+  void set_moment(const FrameRequest& request, std::uint32_t i);
   void pose(const FrameRequest& request, std::uint32_t i);
   void trace(const FrameRequest& request, const PinholeRays& rays);
   void shade(const FrameRequest& request, const PinholeRays& rays, std::uint32_t sample);
+  const FrameStats& render_affine(const FrameRequest& request);
 
   /// Traces all tiles; `counters_of` tells where a tile's work is counted, if anywhere.
   template <class CountersOf>
@@ -113,14 +123,24 @@ double Renderer::State::without_posing(double seconds) {
   return (seconds - posing) * 1e3;
 }
 
-/// The structure at the moment of sample `i`.
-void Renderer::State::pose(const FrameRequest& request, std::uint32_t i) {
-  Stopwatch watch;
+/// The mesh at the moment of sample `i`.
+void Renderer::State::set_moment(const FrameRequest& request, std::uint32_t i) {
   if (request.pose != nullptr) {
     mesh.set_pose(*request.pose);
   } else {
-    mesh.set_time(request.shutter.empty() ? request.at : request.shutter[i]);
+    const KeyInterval& at = request.shutter.empty() ? request.at : request.shutter[i];
+    if (at.key0 != at.key1 && !model.holds_between_keys)
+      throw Error(ErrorCode::kUsage,
+                  "the picture's time lies between keys, where the model's boxes do not hold: "
+                  "render keys, or bake it with --between-keys on");
+    mesh.set_time(at);
   }
+}
+
+/// The structure at that moment.
+void Renderer::State::pose(const FrameRequest& request, std::uint32_t i) {
+  Stopwatch watch;
+  set_moment(request, i);
   stats.pose_ms += watch.lap() * 1e3;
   technique->prebuild(mesh);
   stats.prebuild_ms += without_posing(watch.lap());
@@ -165,8 +185,26 @@ void Renderer::State::shade(const FrameRequest& request, const PinholeRays& rays
   stats.shade_ms += without_posing(watch.seconds());
 }
 
+/// Of the clusters' maps alone: another mesh, with a hierarchy of its own for this one picture.
+const FrameStats& Renderer::State::render_affine(const FrameRequest& request) {
+  const Stopwatch watch;
+  set_moment(request, 0);
+  if (!affine) affine.emplace(model);
+  const ModelView& copy = affine->at(mesh);
+  const double pose_ms = watch.milliseconds();
+  if (affine_picture == nullptr) affine_picture = std::make_unique<Renderer>(copy, "rebuild-bvh");
+  FrameRequest of_copy = request;
+  of_copy.at = at_key(0);
+  of_copy.pose = nullptr;
+  of_copy.shading = ShadingMode::kDiffuse;
+  stats = affine_picture->render(of_copy);
+  stats.pose_ms += pose_ms;
+  return stats;
+}
+
 const FrameStats& Renderer::trace(const FrameRequest& request) {
   check_request(request);
+  state_->shows_affine = false;
   state_->stats = {};
   state_->pose(request, 0);
   state_->trace(request, sample_rays(request, 0));
@@ -177,6 +215,8 @@ const FrameStats& Renderer::render(const FrameRequest& request) {
   check_request(request);
   State& s = *state_;
   s.stats = {};
+  s.shows_affine = request.shading == ShadingMode::kAffine;
+  if (s.shows_affine) return s.render_affine(request);
   s.film.begin(request.width, request.height, request.samples);
   for (std::uint32_t i = 0; i < request.samples; ++i) {
     if (i == 0 || !request.shutter.empty()) s.pose(request, i);
@@ -190,8 +230,12 @@ const FrameStats& Renderer::render(const FrameRequest& request) {
   return s.stats;
 }
 
-std::span<const std::uint32_t> Renderer::pixels() const { return state_->film.pixels(); }
-const HitBuffer& Renderer::hits() const { return state_->hits; }
+std::span<const std::uint32_t> Renderer::pixels() const {
+  return state_->shows_affine ? state_->affine_picture->pixels() : state_->film.pixels();
+}
+const HitBuffer& Renderer::hits() const {
+  return state_->shows_affine ? state_->affine_picture->hits() : state_->hits;
+}
 const HeatScale& Renderer::heat_scale() const { return state_->heat; }
 std::span<const TraceCounters> Renderer::tile_work() const { return state_->tile_work; }
 const FrameStats& Renderer::stats() const { return state_->stats; }

@@ -1,4 +1,4 @@
-// ScaledRay: a caller's ray as the kernels take it.
+// ScaledRay: a caller's ray, which must outlive it, as the kernels take it.
 #pragma once
 
 #include <algorithm>
@@ -22,19 +22,23 @@ inline double power_of_two(int exponent) {
 /// farther than the largest float, in the caller's lengths, is not hit.
 struct ScaledRay {
   WorldRay ray;
+  const QueryRay& query;
   bool usable = false;
 
-  explicit ScaledRay(const QueryRay& q) {
-    const float longest =
-        std::max({std::abs(q.direction.x), std::abs(q.direction.y), std::abs(q.direction.z)});
-    usable = is_finite(q.origin) && is_finite(q.direction) && longest > 0 && q.t_max > q.t_min;
+  explicit ScaledRay(const QueryRay& q) : query(q) {
+    const float longest = std::max(std::max(std::abs(q.direction.x), std::abs(q.direction.y)),
+                                   std::abs(q.direction.z));
+    // Nothing that is not finite gives 0.
+    const float zero = (q.origin.x * 0 + q.origin.y * 0) + (q.origin.z * 0 + q.direction.x * 0) +
+                       (q.direction.y * 0 + q.direction.z * 0);
+    usable = (zero == 0) & (longest > 0) & (q.t_max > q.t_min);
     if (!usable) return;
     const auto bits = std::bit_cast<std::uint64_t>(static_cast<double>(longest));
     const int exponent = static_cast<int>(bits >> 52) - 1023;
     t_scale_ = power_of_two(exponent);
     inverse_ = power_of_two(-exponent);
     ray = {to_double(q.origin), to_double(q.direction) * inverse_, scaled(q.t_min)};
-    t_max_ = std::min({scaled(q.t_max), scaled(kLargest), kLargest});
+    t_max_ = std::min(std::min(scaled(q.t_max), scaled(kLargest)), kLargest);
   }
 
   RayHit nothing_yet() const {
@@ -44,6 +48,8 @@ struct ScaledRay {
   }
   /// A t of the caller's in our lengths.
   float scaled(float t) const { return static_cast<float>(t * t_scale_); }
+  /// What directions were multiplied by.
+  double direction_scale() const { return inverse_; }
   QueryHit in_callers_lengths(const RayHit& hit) const {
     if (hit.triangle == kNoHit) return {};
     return {static_cast<float>(hit.t * inverse_), hit.triangle, hit.bary1, hit.bary2};
@@ -52,9 +58,6 @@ struct ScaledRay {
  private:
   static constexpr float kLargest = std::numeric_limits<float>::max();
 
-  static bool is_finite(const Vec3f& v) {
-    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-  }
 
   double t_scale_ = 1, inverse_ = 1;  ///< from the caller's t to ours, and back
   float t_max_ = 0;

@@ -100,18 +100,22 @@ struct SceneRenderer::State {
   };
 
   State(const Stage& s, const SceneOptions& o)
-      : stage(s), options(o), models(make_models(s)), shader(s, models), workers([this] {
-          return Worker(InstancePool(models, pool_bytes()));
-        }) {}
+      : stage(s),
+        options(o),
+        models(make_models(s, o.cache_bytes / 2)),
+        shader(s, models),
+        workers([this] { return Worker(InstancePool(models, pool_bytes())); }) {}
 
-  static std::vector<std::unique_ptr<CrowdModel>> make_models(const Stage& stage) {
+  static std::vector<std::unique_ptr<CrowdModel>> make_models(const Stage& stage,
+                                                              std::size_t pose_bytes) {
     std::vector<std::unique_ptr<CrowdModel>> models;
     for (const Model& model : stage.models())
-      models.push_back(std::make_unique<CrowdModel>(ModelHandle::view(model)));
+      models.push_back(std::make_unique<CrowdModel>(ModelHandle::view(model),
+                                                    pose_bytes / stage.models().size()));
     return models;
   }
   std::size_t pool_bytes() const {
-    return options.cache_bytes / static_cast<std::size_t>(std::max(1, thread_count()));
+    return options.cache_bytes / 2 / static_cast<std::size_t>(std::max(1, thread_count()));
   }
 
   const Stage& stage;
@@ -240,6 +244,7 @@ struct SceneRenderer::State {
         shade_tile(order[i], w, request.shading);
         w.shade_seconds += of_tile.lap();
       }
+      w.pool.leave();
     });
     const double both = watch.lap() * 1e3;
     double traced = 0, shaded = 0;

@@ -62,7 +62,7 @@ enum class SceneTechnique {
 
 struct SceneOptions {
   SceneTechnique technique = SceneTechnique::kFuzzy;
-  std::size_t cache_bytes = std::size_t{64} << 20;  ///< what pools may take
+  std::size_t cache_bytes = std::size_t{64} << 20;  ///< half for pools, half for key poses
   /// Instances of so many pixels a triangle, or fewer, go pixel by pixel. Changes no picture.
   float line_share = 0.06f;
 };

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "common/trace/color.h"
+#include "common/trace/query_keys.h"
 
 namespace mdk {
 namespace {
@@ -18,7 +19,7 @@ Vec3f linear_color(std::uint32_t rgba) {
 Vec3f product(const Vec3f& a, const Vec3f& b) { return {a.x * b.x, a.y * b.y, a.z * b.z}; }
 
 /// What a pixel sees of a triangle.
-struct Surface {
+struct SeenSurface {
   float weight[3];  ///< barycentric coordinates
   Vec3f normal;     ///< unit, in the world, to the eye
   float facing;     ///< cosine between it and the way to the eye
@@ -37,26 +38,37 @@ struct Shaded {
   const InstanceRays* rays = nullptr;
   const CrowdModel* crowd = nullptr;
   Affine3f model_from_world;
+  const std::uint32_t* places = nullptr;  ///< of vertices in poses
   const Vec3f* from_normals = nullptr;
   const Vec3f* to_normals = nullptr;
   Vec3f tint;
   std::uint32_t number = kNoHit, model = 0;
 
+  Vec3f position(std::uint32_t vertex) const { return rays->vertices.position(places[vertex]); }
+
   Vec3f normal(std::uint32_t vertex) const {
+    if (from_normals == nullptr) {
+      Vec3f sum{};  // weighted by area: a cross product is twice its triangle's
+      for (const std::uint32_t number : crowd->triangles_around(vertex)) {
+        const Triangle& t = crowd->model().triangles[number];
+        const Vec3f a = position(t.v[0]);
+        sum += cross(position(t.v[1]) - a, position(t.v[2]) - a);
+      }
+      return normalized(sum, Vec3f{});
+    }
     const Vec3f& a = from_normals[vertex];
     return a + (to_normals[vertex] - a) * rays->time.s;
   }
 
-  Surface surface(const Triangle& t, bool is_flat, const Vec3f& direction,
-                  const Vec3f& world_direction) const {
-    const VertexSource& source = rays->vertices;
+  SeenSurface surface(const Triangle& t, bool is_flat, const Vec3f& direction,
+                      const Vec3f& world_direction) const {
     const Vec3f origin = rays->rays.origin;
-    const Vec3f a = source.position(t.v[0]) - origin, b = source.position(t.v[1]) - origin,
-                c = source.position(t.v[2]) - origin;
+    const Vec3f a = position(t.v[0]) - origin, b = position(t.v[1]) - origin,
+                c = position(t.v[2]) - origin;
     const Vec3f face = cross(b - a, c - a);
     // Weights by their distance from the ray, with the corners seen from one of them: what cancels
     // is small then.
-    Surface s;
+    SeenSurface s;
     const float along = dot(face, direction);
     const Vec3f p = direction * (along != 0 ? dot(face, a) / along : 0.0f);
     const float square = dot(face, face);
@@ -115,8 +127,10 @@ void SceneShader::shade_tile(const CrowdFrame& frame, ShadingMode mode, std::uin
       at.model = stage_.role(at.number).model;
       at.crowd = models_[at.model].get();
       at.model_from_world = to_float(stage_.model_from_world(at.number, frame.time));
-      at.from_normals = at.crowd->normals(at.rays->time.key0).data();
-      at.to_normals = at.crowd->normals(at.rays->time.key1).data();
+      at.places = at.crowd->tracer().rays().poses->places();
+      const bool kept = at.crowd->keeps_normals();
+      at.from_normals = kept ? at.crowd->normals(at.rays->time.key0).data() : nullptr;
+      at.to_normals = kept ? at.crowd->normals(at.rays->time.key1).data() : nullptr;
       at.tint = linear_color(stage_.scene().labels[at.number].tint);
     }
     const ModelView& model = at.crowd->model();
@@ -126,8 +140,8 @@ void SceneShader::shade_tile(const CrowdFrame& frame, ShadingMode mode, std::uin
     const auto& looks = model.appearance;
     const Material& material = looks.materials[looks.triangle_materials[number]];
     const Triangle& triangle = model.triangles[number];
-    const Surface s = at.surface(triangle, (material.flags & kMaterialFlatShaded) != 0, direction,
-                                 frame.rays.direction(x, y));
+    const SeenSurface s = at.surface(triangle, (material.flags & kMaterialFlatShaded) != 0,
+                                     direction, frame.rays.direction(x, y));
     Vec3f color;
     if (mode == ShadingMode::kNormals) {
       color = s.normal * 0.5f + Vec3f{0.5f, 0.5f, 0.5f};

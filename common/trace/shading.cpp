@@ -27,6 +27,7 @@ std::span<const ShadingInfo> shading_table() {
       {ShadingMode::kBoxes, "boxes", "Boxes"},
       {ShadingMode::kTests, "tests", "Tests"},
       {ShadingMode::kResidual, "residual", "Residual"},
+      {ShadingMode::kAffine, "affine", "Affine motion"},
   };
   return kTable;
 }

@@ -24,6 +24,7 @@ enum class ShadingMode {
   kBoxes,     ///< heat map of node visits, tile by tile
   kTests,     ///< heat map of triangle tests, tile by tile
   kResidual,  ///< heat map of what the clusters' maps do not explain, by triangle
+  kAffine,    ///< headlight on the mesh as the clusters' maps alone would have it
 };
 
 struct ShadingInfo {

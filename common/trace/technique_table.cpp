@@ -38,6 +38,8 @@ std::span<const TechniqueInfo> technique_table() {
        "Bittner and Meister 2015", make_tsah_refit},
       {"hybrid-bvh", "Hybrid BVH", "refitted until motion has worn it out, then built anew",
        "Lo09 §5.4", make_hybrid_bvh, TechniqueKind::kHistory},
+      {"rotate-bvh", "Rotated BVH", "refitted, mended by tree rotations", "Kensler 2008",
+       make_rotate_bvh, TechniqueKind::kHistory},
       {"decomp-refit", "Clusters, refitted", "motion clusters, their hierarchies refitted",
        "Lo09 §4.4", make_decomp_refit},
       {"auto", "Automatic", "whichever of ours measures cheapest here", "measured", make_auto,

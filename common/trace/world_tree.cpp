@@ -18,18 +18,21 @@ bool is_finite(const Vec3f& v) {
 
 }  // namespace
 
-WorldTree::WorldTree(const ModelView& model, const VertexSource& source) {
-  std::vector<Aabb> boxes(model.triangle_count());
+WorldTree::WorldTree(const ModelView& model, const std::vector<std::uint32_t>& place_of_vertex,
+                     const VertexSource& source) {
+  std::vector<Triangle> triangles(model.triangles.begin(), model.triangles.end());
+  for (Triangle& t : triangles)
+    for (std::uint32_t& v : t.v) v = place_of_vertex[v];
+  std::vector<Aabb> boxes(triangles.size());
   parallel_chunks(boxes.size(), kTrianglesPerChunk, [&](std::size_t begin, std::size_t end) {
     for (std::size_t t = begin; t < end; ++t) {
-      const auto corner = [&](int k) { return source.position(model.triangles[t].v[k]); };
+      const auto corner = [&](int k) { return source.position(triangles[t].v[k]); };
       const Vec3f a = corner(0), b = corner(1), c = corner(2);
       const bool finite = is_finite(a) && is_finite(b) && is_finite(c);
       for (const Vec3f& v : {a, b, c}) boxes[t].extend(finite ? v : Vec3f{});
     }
   });
-  WideBvh tree = build_wide_bvh(boxes, kBins);
-  nodes_ = take_nodes(std::move(tree), 0, model.triangles, blocks_);
+  nodes_ = build_ray_tree(boxes, kBins, 0, triangles, blocks_);
 }
 
 PosedWorldTree::PosedWorldTree(const WorldTree& tree, const VertexSource& source)
@@ -38,7 +41,7 @@ PosedWorldTree::PosedWorldTree(const WorldTree& tree, const VertexSource& source
   std::vector<Aabb> boxes(blocks.size());
   pose_blocks(blocks, source, posed_.data(), boxes.data());
   for (std::size_t i = nodes_.size(); i-- > 0;) {
-    WideBvhNode& node = nodes_[i];
+    RayNode& node = nodes_[i];
     for (std::uint32_t c = 0; c < node.count; ++c) {
       const std::uint32_t below = node.child[c].index();
       if (!node.child[c].is_leaf()) {

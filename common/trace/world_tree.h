@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "common/motion/model.h"
@@ -12,17 +13,19 @@ namespace mdk {
 /// Which triangles stand together, as they lie at one time.
 class WorldTree {
  public:
-  /// Runs in parallel. Cost: O(T log T).
-  WorldTree(const ModelView& model, const VertexSource& source);
+  /// Vertex v of the model stands at place_of_vertex[v] of the source. Runs in parallel. Cost: O(T
+  /// log T).
+  WorldTree(const ModelView& model, const std::vector<std::uint32_t>& place_of_vertex,
+            const VertexSource& source);
 
-  const std::vector<WideBvhNode>& nodes() const { return nodes_; }
+  const std::vector<RayNode>& nodes() const { return nodes_; }
   const std::vector<RayBlock>& blocks() const { return blocks_; }
   std::size_t bytes() const {
-    return nodes_.size() * sizeof(WideBvhNode) + blocks_.size() * sizeof(RayBlock);
+    return nodes_.size() * sizeof(RayNode) + blocks_.size() * sizeof(RayBlock);
   }
 
  private:
-  std::vector<WideBvhNode> nodes_;  ///< links of leaves are numbers of blocks
+  std::vector<RayNode> nodes_;  ///< links of leaves are numbers of blocks
   std::vector<RayBlock> blocks_;
 };
 
@@ -34,11 +37,11 @@ class PosedWorldTree {
 
   const PosedScene& scene() const { return scene_; }
   std::size_t bytes() const {
-    return nodes_.size() * sizeof(WideBvhNode) + posed_.size() * sizeof(PosedRayBlock);
+    return nodes_.size() * sizeof(RayNode) + posed_.size() * sizeof(PosedRayBlock);
   }
 
  private:
-  std::vector<WideBvhNode> nodes_;
+  std::vector<RayNode> nodes_;
   std::vector<PosedRayBlock> posed_;
   PosedScene scene_;
 };

@@ -56,7 +56,7 @@ std::uint64_t write_sections(const std::string& path, const layout::FileFormat& 
   }
   header.magic = format.magic;
   header.major_version = format.major_version;
-  header.minor_version = format.minor_version;
+  header.minor_version = std::max(header.minor_version, format.minor_version);
   header.file_bytes = layout::align_up(end);
   header.section_count = static_cast<std::uint32_t>(sections.size());
   header.checksum = layout::table_checksum(header, table);

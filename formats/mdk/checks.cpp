@@ -357,6 +357,8 @@ std::string check_skeleton(const ModelView& m) {
   const SkeletonView& s = m.skeleton;
   if (!s.joints.empty() && m.segments.size() != 1)
     return "segments: more than one, though the skeleton needs one";
+  if (!s.joints.empty() && !m.holds_between_keys)
+    return "model: its boxes hold at keys only, though there is a skeleton";
   if (const std::string fault = check_joints(s); !fault.empty()) return fault;
   for (std::size_t i = 0; i < s.bones.size(); ++i) {
     const std::string name = "bone_bindings: bone " + number(i);

@@ -15,16 +15,22 @@ namespace mdk::layout {
 inline constexpr std::array<unsigned char, 8> kMagic = {0x89, 'M',  'D',  'K',
                                                         '\r', '\n', 0x1a, '\n'};
 inline constexpr std::uint16_t kMajorVersion = 3;
-inline constexpr std::uint16_t kMinorVersion = 0;
+inline constexpr std::uint16_t kMinorVersion = 0, kMinorVersionOfFlags = 1;
+
 struct ModelRecord {
   std::uint32_t vertex_count = 0, key_count = 0, triangle_count = 0, cluster_count = 0;
   std::uint32_t clip_count = 0, rest_key = 0;
-  PoseKind pose_kind = PoseKind::kKeyPositions;
+  std::uint16_t pose_kind = 0, flags = 0;  ///< a PoseKind; kKeysOnly or nothing
   std::uint32_t segment_count = 0;
   double rest_diagonal = 0;
   Aabb bounds;
 };
 static_assert(sizeof(ModelRecord) == 64 && offsetof(ModelRecord, bounds) == 40);
+static_assert(offsetof(ModelRecord, pose_kind) == 24 && offsetof(ModelRecord, flags) == 26);
+
+/// Flag of a model: fuzzy boxes hold at keys only. Programs that do not know flags take it for a
+/// part of the pose kind, and refuse the file.
+inline constexpr std::uint16_t kKeysOnly = 1;
 
 struct ClipRecord {
   std::uint32_t name_offset = 0, name_bytes = 0;

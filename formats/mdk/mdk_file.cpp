@@ -21,10 +21,12 @@ const ModelRecord& only_record(const FileSections& sections, const std::string& 
     throw bad_input(path, "section model must hold one record; the file is damaged: bake it again");
   }
   const ModelRecord& record = records.front();
-  if (record.pose_kind > PoseKind::kQuantized) {
+  if ((record.flags & ~layout::kKeysOnly) != 0) {
+    throw bad_input(path, "its model has flags this program does not know; use a newer one");
+  }
+  if (record.pose_kind > static_cast<std::uint16_t>(PoseKind::kQuantized)) {
     throw bad_input(
-        path, "stores its poses as kind " +
-                  std::to_string(static_cast<std::uint32_t>(record.pose_kind)) +
+        path, "stores its poses as kind " + std::to_string(record.pose_kind) +
                   ", which this program does not know (it knows 0, key positions, "
                   "1, a rig, and 2, quantised positions); use a newer one, or bake the file again");
   }
@@ -68,7 +70,8 @@ struct MdkFile::State {
     model.rest_key = record.rest_key;
     model.bounds = record.bounds;
     model.rest_diagonal = record.rest_diagonal;
-    model.poses.kind = record.pose_kind;
+    model.poses.kind = static_cast<PoseKind>(record.pose_kind);
+    model.holds_between_keys = (record.flags & layout::kKeysOnly) == 0;
     model.clips = clips;
     ModelView::for_each_array(
         [&]<class T>(const ModelArray& row, std::span<const T>& array) {

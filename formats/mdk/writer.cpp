@@ -33,7 +33,8 @@ Records make_records(const ModelView& model) {
   r.clip_count = static_cast<std::uint32_t>(model.clips.size());
   r.rest_key = model.rest_key;
   r.rest_diagonal = model.rest_diagonal;
-  r.pose_kind = model.poses.kind;
+  r.pose_kind = static_cast<std::uint16_t>(model.poses.kind);
+  r.flags = model.holds_between_keys ? 0 : layout::kKeysOnly;
   r.bounds = model.bounds;
   for (const Clip& clip : model.clips) {
     records.clips.push_back({static_cast<std::uint32_t>(records.clip_names.size()),
@@ -67,6 +68,7 @@ std::uint64_t write_mdk(const ModelView& model, const std::string& path,
   }
   const Records records = make_records(model);
   layout::FileHeader header;
+  if (records.model.flags != 0) header.minor_version = layout::kMinorVersionOfFlags;
   std::ranges::copy(options.origin.version, header.tool_version);
   header.options_hash = options.origin.options_hash;
   header.source_reader = static_cast<std::uint16_t>(options.origin.reader);

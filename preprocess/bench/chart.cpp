@@ -183,6 +183,7 @@ constexpr SeriesColor kColors[] = {
     {"refit-bvh", "#d98200", "#ffb84d", ""},
     {"tsah-refit", "#d98200", "#ffb84d", "stroke-dasharray:6 3"},
     {"hybrid-bvh", "#d98200", "#ffb84d", "stroke-dasharray:2 2.5"},
+    {"rotate-bvh", "#d98200", "#ffb84d", "stroke-dasharray:8 2 2 2"},
     {"decomp-refit", "#00805e", "#3fd0a5", ""},
     {"auto", "#a8428a", "#f09ad4", "stroke-dasharray:8 2 2 2"},
     {"embree", "#4d545c", "#b8c0c8", "stroke-width:2.2"},

@@ -17,6 +17,7 @@
 #include "preprocess/bench/report.h"
 #include "preprocess/bench/scene_frames.h"
 #include "preprocess/bench/scene_rays.h"
+#include "preprocess/boxes/model_assembly.h"
 #include "preprocess/commands/command_line.h"
 #include "preprocess/tool/files.h"
 #include "preprocess/tool/progress_bar.h"
@@ -62,7 +63,13 @@ ModelBench bench_file(const std::string& path, const ViewOptions& view, BenchCon
   config.request.shading = view.shading;
   config.request.samples = view.samples;
   config.request.occlusion_rays = view.occlusion_rays;
-  ModelBench result{path, model.triangle_count(), model.key_count(), model.cluster_count(), {}, {}};
+  ModelBench result;
+  result.file = path;
+  result.triangles = model.triangle_count();
+  result.keys = model.key_count();
+  result.clusters = model.cluster_count();
+  result.between_keys = model.holds_between_keys;
+  result.predicted_cost = predicted_cost(model);
   result.bake = read_bake_facts(path, result.triangles, result.keys, result.clusters);
   result.techniques = bench_techniques(model, config, progress);
   return result;

@@ -46,6 +46,7 @@ void count_and_judge(const ModelView& model, const BenchConfig& config, Renderer
       BenchFrame frame;
       frame.key = keys[k];
       frame.counters = stats.counters;
+      frame.hits = stats.hits;
       frame.structure_bytes = renderers[i]->structure_bytes();
       result.frames.push_back(frame);
       result.rays_per_frame = stats.rays;

@@ -1,14 +1,11 @@
-// Tables and figures of GFW06 and Lo09, with our figures in place of theirs.
+// Tables and figures of GFW06, with our figures in place of theirs.
 #include <algorithm>
-#include <array>
 
 #include "common/base/text.h"
 #include "preprocess/bench/report.h"
 
 namespace mdk {
 namespace {
-
-// --- GFW06 ---
 
 /// GFW06 Table 1: traversal steps of a picture, candidates in leaves per ray, frames per second.
 struct PaperRow {
@@ -32,11 +29,6 @@ const std::vector<PaperRow>& paper_rows() {
   return rows;
 }
 
-std::string strong_ratio(double a, double b) {
-  const std::string ratio = ratio_text(a, b);
-  return ratio == "–" ? ratio : "**" + ratio + "**";
-}
-
 /// A model with a fuzzy tree and static ones measured.
 struct KdTrees {
   const ModelBench& model;
@@ -47,8 +39,7 @@ struct KdTrees {
   std::string paper(const char* PaperRow::*ratio) const {
     for (const PaperRow& row : paper_rows())
       for (const char* before : {"", "real-"})
-        for (const char* after : {"", "-paper"})
-          if (model.name() == std::string(before) + row.scene + after) return row.*ratio;
+        if (base_name(model.name()) == std::string(before) + row.scene) return row.*ratio;
     return "–";
   }
   static std::string leaf_text(const TechniqueBench& technique) {
@@ -89,7 +80,8 @@ Section gfw06_table1(const BenchRun& run) {
   for (const ModelBench& model : run.models) {
     const TechniqueBench* fixed = model.find("static-kdtree");
     const TechniqueBench* fuzzy = model.find("fuzzy-kdtree");
-    if (fixed != nullptr && fuzzy != nullptr) rows.push_back({model, *fixed, *fuzzy});
+    if (fixed != nullptr && fuzzy != nullptr && variant_of(model.name()) != "level")
+      rows.push_back({model, *fixed, *fuzzy});
   }
   Table table = table_of<KdTrees>(
       "One kd-tree over fuzzy boxes that hold at all times (`fuzzy-kdtree`) beside a kd-tree built "
@@ -99,7 +91,9 @@ Section gfw06_table1(const BenchRun& run) {
       "pairs still evaluated after culling by the triangles' bounds and depths, which the paper "
       "does not have. Ratios are what the one tree costs: fuzzy / static for work and trace time, "
       "static / fuzzy for frames per second. GFW06's ratios stand beside those of models named as "
-      "its scenes; `real-cow` is its COW, the samples are other meshes of the same kind. " +
+      "its scenes; `real-cow` is its COW, the samples are other meshes of the same kind. "
+      "Models named `-paper` are baked by the paper's method with the paper's number of clusters, "
+      "boxes bounded at keys alone. " +
           constants_sentence(rows),
       rows,
       {{"model", [](auto& r) { return r.model.name(); }},
@@ -155,6 +149,40 @@ Section gfw06_table1(const BenchRun& run) {
            std::move(paper)}};
 }
 
+/// One pose, cut into clusters that do not move: what the second level costs where nothing else is
+/// different.
+Section gfw06_second_level(const BenchRun& run) {
+  std::vector<KdTrees> rows;
+  for (const ModelBench& model : run.models) {
+    const TechniqueBench* fixed = model.find("static-kdtree");
+    const TechniqueBench* fuzzy = model.find("fuzzy-kdtree");
+    if (fixed != nullptr && fuzzy != nullptr && variant_of(model.name()) == "level")
+      rows.push_back({model, *fixed, *fuzzy});
+  }
+  Table table = table_of<KdTrees>(
+      "A model of a single pose, cut into clusters, so that no fuzzy box is larger than its "
+      "triangle: one kd-tree over all triangles (`static-kdtree`) beside one for each cluster "
+      "under a top level (`fuzzy-kdtree`). GFW06 puts the second level at about 30 % of the frame "
+      "rate, for mapping rays; a tile here maps one pinhole for each cluster.",
+      rows,
+      {{"model", [](auto& r) { return r.model.name(); }},
+       {"triangles", [](auto& r) { return grouped_text(r.model.triangles); }},
+       {"clusters", [](auto& r) { return std::to_string(r.model.clusters); }},
+       {"steps, two levels / one",
+        [](auto& r) { return strong_ratio(r.fuzzy_work.node_visits, r.fixed_work.node_visits); }},
+       {"candidates", [](auto& r) { return r.leaf_ratio(); }},
+       {"trace one level", [](auto& r) { return fixed_text(r.trace_ms(r.fixed), 2); }},
+       {"trace two levels", [](auto& r) { return fixed_text(r.trace_ms(r.fuzzy), 2); }},
+       {"ratio", [](auto& r) { return strong_ratio(r.trace_ms(r.fuzzy), r.trace_ms(r.fixed)); }},
+       {"frames per second, one / two levels",
+        [](auto& r) { return strong_ratio(r.fixed.fps(), r.fuzzy.fps()); }}});
+  return {"gfw06-second-level",
+          "What a second level costs alone (GFW06 §5)",
+          {or_needs(std::move(table),
+                    "Needs `static-kdtree` and `fuzzy-kdtree` measured on a model of one key, "
+                    "baked with `--clusters N` and named `NAME-level`.")}};
+}
+
 /// A figure of the decomposition as a share of what it is with one cluster.
 ChartSeries growth_series(const std::vector<GrowthStep>& steps, const char* label,
                           std::size_t style, double GrowthStep::*figure) {
@@ -182,13 +210,18 @@ Section gfw06_figure7(const BenchRun& run) {
                     growth_series(steps, "expected work of a ray", 2, &GrowthStep::sah_cost)};
     return chart;
   };
+  std::vector<Chart> charts = charts_of_models(run, chart_of);
+  for (const ModelBench& model : run.models)
+    if (variant_of(model.name()) == "paper")
+      if (Chart chart = chart_of(model); !chart.series.empty()) charts.push_back(std::move(chart));
   return figure_section(
       {.id = "gfw06-figure-7",
        .caption = "Residual motion, summed area of the fuzzy boxes, and the expected work of a ray "
                   "(area, and a fixed cost for every cluster entered), as the bake saw them at "
                   "each stage; "
-                  "each relative to one cluster, and drawn at 0.001 where it is less.",
-       .charts = charts_of_models(run, chart_of)},
+                  "each relative to one cluster, and drawn at 0.001 where it is less. Charts of "
+                  "`-paper` models show the paper's own method, one cluster at a time.",
+       .charts = std::move(charts)},
       "While clusters are added (GFW06 Figure 7)",
       "No bake report with more than one stage stood beside the files: bake with `--report "
       "NAME.json` beside `NAME.mdk`.");
@@ -226,122 +259,10 @@ Section gfw06_figure8(const BenchRun& run) {
                         "Needs `fuzzy-kdtree` or `fuzzy-bvh` measured at two keys or more.");
 }
 
-// --- Lo09 ---
-
-/// A row of Lo09 Table I: frames per second in the order of kFour.
-struct FourRates {
-  std::string animation;
-  std::array<double, 4> fps{};
-};
-constexpr const char* kFour[] = {"rebuild-bvh", "refit-bvh", "fuzzy-bvh", "decomp-refit"};
-const std::vector<FourRates>& thesis_rows() {
-  static const std::vector<FourRates> rows = {{"Cally walking", {11.55, 12.44, 8.76, 9.50}},
-                                              {"Cally freestyle", {11.21, 11.37, 8.78, 9.22}},
-                                              {"Skeleton freestyle", {13.07, 14.36, 13.81, 13.50}},
-                                              {"Paladin jogging", {9.86, 10.35, 6.97, 7.72}}};
-  return rows;
-}
-
-Table four_table(std::string text, const std::vector<FourRates>& rows) {
-  std::vector<Column<FourRates>> columns = {{"animation", [](auto& r) { return r.animation; }}};
-  std::size_t t = 0;
-  for (const char* head : {"fast rebuilds", "refitting", "clusters, fuzzy", "clusters, refitted"})
-    columns.push_back({head, [i = t++](auto& r) { return fixed_text(r.fps[i], 2); }});
-  t = 1;
-  for (const char* head : {"refit / rebuild", "fuzzy / rebuild", "clusters, refitted / rebuild"})
-    columns.push_back({head, [i = t++](auto& r) {
-                         return r.fps[0] > 0 ? strong_ratio(r.fps[i], r.fps[0]) : "–";
-                       }});
-  return table_of(std::move(text), rows, columns);
-}
-
-Section lo09_table1(const BenchRun& run) {
-  std::vector<FourRates> ours;
-  for (const ModelBench& model : run.models) {
-    FourRates row{model.name()};
-    std::size_t found = 0;
-    for (const char* id : kFour)
-      if (const TechniqueBench* technique = model.find(id)) row.fps[found++] = technique->fps();
-    if (found == row.fps.size()) ours.push_back(row);
-  }
-  return {"lo09-table-1",
-          "Four techniques for moving meshes (Lo09 Table I)",
-          {Paragraph{"Frames per second (1000 / median time to image) of `rebuild-bvh`, "
-                     "`refit-bvh`, `fuzzy-bvh` and `decomp-refit`, and how many times as fast as "
-                     "rebuilding each is."},
-           or_needs(four_table("", ours), "Needs all four measured on one model."),
-           four_table("The thesis's own figures (512 x 512, one core at 2.4 GHz, 2009; first 50 "
-                      "frames):",
-                      thesis_rows())}};
-}
-
-/// Figures 5.1 to 5.20 of Lo09: a chart for each model, a line for each technique over the keys.
-struct FrameFigure {
-  const char* id;
-  const char* numbers;
-  const char* title;
-  const char* y_label;
-  const char* caption;
-  Scale scale;
-  double (*value)(const BenchFrame&);
-  bool is_per_ray = false;
-};
-const FrameFigure kFrameFigures[] = {
-    {"lo09-time-to-image", "5.1–5.4", "Time to image", "ms", "Pose, update, trace and shade.",
-     Scale::kLinear, [](const BenchFrame& f) { return f.time_to_image_ms(); }},
-    {"lo09-trace", "5.5–5.8", "Trace time", "ms", "Finding the closest hits of all rays.",
-     Scale::kLinear, [](const BenchFrame& f) { return f.trace_ms; }},
-    {"lo09-triangle-tests", "5.9–5.12", "Triangle tests", "tests per ray",
-     "Ray-triangle pairs evaluated after culling, over all rays of the picture. Peers do not "
-     "count.",
-     Scale::kLinear,
-     [](const BenchFrame& f) { return static_cast<double>(f.counters.triangle_tests); }, true},
-    {"lo09-node-tests", "5.13–5.16", "Node tests", "visits per ray",
-     "Boxes tested or kd-tree nodes visited, once for a tile of rays that shares a frustum. Peers "
-     "do not count.",
-     Scale::kLinear,
-     [](const BenchFrame& f) { return static_cast<double>(f.counters.node_visits); }, true},
-    {"lo09-update", "5.17–5.20", "Update time", "ms",
-     "Making the structure valid for the frame, on a logarithmic scale; the pose is computed "
-     "before, alike for all. `static-kdtree` only swaps trees that were built ahead.",
-     Scale::kLog, [](const BenchFrame& f) { return f.update_ms; }},
-};
-
-std::vector<ChartPoint> frame_points(const TechniqueBench& technique, const FrameFigure& kind) {
-  std::vector<ChartPoint> points;
-  const double unit = kind.is_per_ray ? static_cast<double>(technique.rays_per_frame) : 1;
-  double largest = 0;
-  for (const BenchFrame& frame : technique.frames) {
-    const double value = unit > 0 ? kind.value(frame) / unit : 0;
-    largest = std::max(largest, value);
-    points.push_back({static_cast<double>(frame.key), value});
-  }
-  return technique.frames.size() > 1 && largest > 0 ? points : std::vector<ChartPoint>();
-}
-
-Section lo09_figure(const BenchRun& run, const FrameFigure& kind) {
-  const auto chart_of = [&](const ModelBench& model) {
-    return Chart{.title = model.name(),
-                 .x_label = "key",
-                 .y_label = kind.y_label,
-                 .y_scale = kind.scale,
-                 .series = technique_series(model, [&](const TechniqueBench& technique) {
-                   return frame_points(technique, kind);
-                 })};
-  };
-  return figure_section(
-      {.id = kind.id, .caption = kind.caption, .charts = charts_of_models(run, chart_of)},
-      std::string(kind.title) + " over the animation (Lo09 Figures " + kind.numbers + ")",
-      "Needs a model measured at two keys or more.");
-}
-
 }  // namespace
 
-std::vector<Section> paper_sections(const BenchRun& run) {
-  std::vector<Section> sections = {gfw06_table1(run), gfw06_figure7(run), gfw06_figure8(run),
-                                   lo09_table1(run)};
-  for (const FrameFigure& kind : kFrameFigures) sections.push_back(lo09_figure(run, kind));
-  return sections;
+std::vector<Section> gfw06_sections(const BenchRun& run) {
+  return {gfw06_table1(run), gfw06_second_level(run), gfw06_figure7(run), gfw06_figure8(run)};
 }
 
 }  // namespace mdk

@@ -52,8 +52,8 @@ struct Contest {
   const ModelBench& model;
   Technique fuzzy = fastest_of(model, {"fuzzy-bvh", "fuzzy-kdtree"});
   Technique embree = fastest_of(model, {"embree", "embree-refit", "embree-low", "embree-medium"});
-  Technique other =
-      fastest_of(model, {"rebuild-bvh", "refit-bvh", "tsah-refit", "hybrid-bvh", "decomp-refit"});
+  Technique other = fastest_of(model, {"rebuild-bvh", "refit-bvh", "tsah-refit", "hybrid-bvh",
+                                       "rotate-bvh", "decomp-refit"});
   Technique fuzzy_bvh = model.find("fuzzy-bvh");
   Technique rebuilt = model.find("rebuild-bvh");
 };
@@ -75,7 +75,7 @@ std::string mismatch_sentence(const BenchResults& results) {
 Section summary(const BenchResults& results) {
   std::vector<Contest> rows;
   for (const ModelBench& model : results.runs.front().models)
-    rows.push_back({results.runs.front(), model});
+    if (variant_of(model.name()).empty()) rows.push_back({results.runs.front(), model});
   return {
       "summary",
       "At a glance",
@@ -137,7 +137,8 @@ Section machines(const BenchResults& results) {
   std::vector<Contest> rows;
   for (const ModelBench& model : results.runs.front().models)
     for (const BenchRun& run : results.runs)
-      if (const ModelBench* same = run.find(model.name())) rows.push_back({run, *same});
+      if (const ModelBench* same = run.find(model.name()); same && variant_of(same->name()).empty())
+        rows.push_back({run, *same});
   Section section{
       "machines",
       "Instruction sets and threads",
@@ -397,10 +398,27 @@ std::vector<std::pair<std::string, std::string>> facts_of(const BenchResults& re
 
 std::string ratio_text(double a, double b) { return b > 0 ? fixed_text(a / b, 2) : "–"; }
 
+std::string strong_ratio(double a, double b) {
+  const std::string ratio = ratio_text(a, b);
+  return b > 0 ? "**" + ratio + "**" : ratio;
+}
+
+std::string variant_of(const std::string& name) {
+  for (const char* variant : {"paper", "bones", "space", "first", "level"})
+    if (name.ends_with(std::string("-") + variant)) return variant;
+  return {};
+}
+
+std::string base_name(const std::string& name) {
+  const std::string variant = variant_of(name);
+  return variant.empty() ? name : name.substr(0, name.size() - variant.size() - 1);
+}
+
 std::vector<const ModelBench*> whole_models(const BenchRun& run) {
   std::vector<const ModelBench*> models;
   for (const ModelBench& model : run.models)
-    if (model.name().find("-split") == std::string::npos) models.push_back(&model);
+    if (model.name().find("-split") == std::string::npos && variant_of(model.name()).empty())
+      models.push_back(&model);
   return models;
 }
 
@@ -442,7 +460,9 @@ Report make_report(const BenchResults& results) {
   const BenchRun& run = results.runs.front();
   Report report{"Ray tracing animated meshes: every technique, measured", facts_of(results), {}};
   report.sections.push_back(summary(results));
-  for (Section& section : paper_sections(run)) report.sections.push_back(std::move(section));
+  for (const auto& of_paper : {gfw06_sections, lo09_sections})
+    for (Section& section : of_paper(run)) report.sections.push_back(std::move(section));
+  report.sections.push_back(predicted_cost_section(run));
   report.sections.push_back(crossover(run));
   report.sections.push_back(memory(run));
   report.sections.push_back(bakes(run));

@@ -1,7 +1,7 @@
 // A report: what a result file says, as sections of text, tables and figures. It is described once
-// (report.cpp; papers.cpp for what stands beside GFW06 and Lo09): a table by its rows and columns,
-// a figure by the series of its charts. Pages, documents, lines of text and CSV are made of the
-// description (pages.cpp).
+// (report.cpp; papers.cpp for what stands beside GFW06, thesis.cpp beside Lo09): a table by its
+// rows and columns, a figure by the series of its charts. Pages, documents, lines of text and CSV
+// are made of the description (pages.cpp).
 //
 // Texts know one kind of markup: `code` and **strong**.
 #pragma once
@@ -71,7 +71,11 @@ struct Report {
 Report make_report(const BenchResults& results);
 
 /// Tables and figures of GFW06 and Lo09 with our figures in place of theirs.
-std::vector<Section> paper_sections(const BenchRun& run);
+std::vector<Section> gfw06_sections(const BenchRun& run);
+std::vector<Section> lo09_sections(const BenchRun& run);
+
+/// What the cost of each model expects beside how long its rays took.
+Section predicted_cost_section(const BenchRun& run);
 
 /// Every figure of every technique, a table for each model.
 Section detail_section(const BenchRun& run);
@@ -87,8 +91,19 @@ Table csv_table(const BenchResults& results);
 
 /// "–" where nothing can be divided by.
 std::string ratio_text(double a, double b);
+/// The same, to be looked at first.
+std::string strong_ratio(double a, double b);
 
-/// A chart for each model but those whose triangles are split ("hand-split2"): charts over time.
+/// Models are baked in other ways, too, to be compared: "paper" (by GFW06's method), "bones" (a
+/// cluster for each), "space" (bones, for a pose space), "first" (the first key as rest pose),
+/// "level" (one pose, cut into clusters). Which way, by the end of the name ("hand-paper"); empty
+/// for the usual one.
+std::string variant_of(const std::string& name);
+/// The name without that.
+std::string base_name(const std::string& name);
+
+/// A chart for each model but those whose triangles are split ("hand-split2") and those baked in
+/// another way than usual: charts over time.
 /// Those without series are left out.
 std::vector<Chart> charts_of_models(const BenchRun& run,
                                     const std::function<Chart(const ModelBench&)>& chart_of);

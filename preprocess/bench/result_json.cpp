@@ -88,6 +88,9 @@ class Fields {
       require(from_->is_number(), "is not a number");
       value = from_->get<double>();
       require(std::isfinite(value) && value >= 0, "is not a number that can be measured");
+    } else if constexpr (std::is_same_v<Value, bool>) {
+      require(from_->is_boolean(), "is neither true nor false");
+      value = from_->get<bool>();
     } else if constexpr (std::is_integral_v<Value>) {
       require(from_->is_number_unsigned(), "is not a whole number");
       const auto count = from_->get<std::uint64_t>();
@@ -133,6 +136,7 @@ void describe(Fields& io, BenchFrame& frame) {
   io.field("triangle_tests", frame.counters.triangle_tests);
   io.newer("triangle_setups", frame.counters.leaf_triangles);  // its name in files
   io.field("clusters_entered", frame.counters.clusters_entered);
+  io.newer("hits", frame.hits);
   io.field("structure_bytes", frame.structure_bytes);
 }
 
@@ -195,6 +199,8 @@ void describe(Fields& io, ModelBench& model) {
   io.field("triangles", model.triangles);
   io.field("keys", model.keys);
   io.field("clusters", model.clusters);
+  io.newer("between_keys", model.between_keys);
+  io.optional("predicted_cost", model.predicted_cost);
   io.optional("bake", model.bake);
   io.field("techniques", model.techniques);
 }

@@ -95,6 +95,22 @@ WorkPerRay TechniqueBench::work() const {
   return work_per_ray(sum, rays_per_frame * frames.size());
 }
 
+WorkPerRay TechniqueBench::work_per_hit() const {
+  TraceCounters sum;
+  std::uint64_t hits = 0;
+  for (const BenchFrame& frame : frames) {
+    sum += frame.counters;
+    hits += frame.hits;
+  }
+  return hits > 0 ? work_per_ray(sum, hits) : WorkPerRay{};
+}
+
+double TechniqueBench::hits_per_frame() const {
+  double hits = 0;
+  for (const BenchFrame& frame : frames) hits += static_cast<double>(frame.hits);
+  return frames.empty() ? 0 : hits / static_cast<double>(frames.size());
+}
+
 bool TechniqueBench::has_leaf_counts() const {
   const WorkPerRay counted = work();
   return counted.leaf_triangles > 0 || counted.triangle_tests == 0;

@@ -25,6 +25,7 @@ struct BenchFrame {
   std::uint32_t key = 0;
   double pose_ms = 0, update_ms = 0, trace_ms = 0, shade_ms = 0;
   TraceCounters counters;             ///< all zero for peers
+  std::uint64_t hits = 0;             ///< rays that hit; 0 in results of older programs
   std::uint64_t structure_bytes = 0;  ///< once this frame and those before it had been counted
 
   double time_to_image_ms() const { return pose_ms + update_ms + trace_ms + shade_ms; }
@@ -61,6 +62,9 @@ struct TechniqueBench {
   /// the fastest of the rounds can be trusted to. 0 for a single round.
   double round_spread() const;
   WorkPerRay work() const;
+  /// The same, divided by the rays that hit; zeros where hits were not counted.
+  WorkPerRay work_per_hit() const;
+  double hits_per_frame() const;  ///< mean; 0 where they were not counted
   /// False for results of a program that did not count the triangles of leaves.
   bool has_leaf_counts() const;
 };
@@ -83,6 +87,8 @@ struct ModelBench {
   std::uint32_t triangles = 0, keys = 0, clusters = 0;
   std::optional<BakeFacts> bake;
   std::vector<TechniqueBench> techniques;
+  bool between_keys = true;   ///< whether its boxes hold there
+  double predicted_cost = 0;  ///< see predicted_cost() of the model; 0: not known
 
   /// The file's name without folder and ending.
   std::string name() const;

@@ -148,7 +148,8 @@ Section detail_section(const BenchRun& run) {
         listed_table(Place::kPage,
                      "**" + model.name() + "**: " + grouped_text(model.triangles) + " triangles, " +
                          grouped_text(model.keys) + " keys, " + grouped_text(model.clusters) +
-                         " clusters; " + std::to_string(first.frames.size()) + " frames, " +
+                         " clusters" + (model.between_keys ? "" : " (boxes hold at keys only)") +
+                         "; " + std::to_string(first.frames.size()) + " frames, " +
                          std::to_string(first.round_medians_ms.size()) +
                          " rounds; brute force judged " + std::to_string(first.judged_frames) + ".",
                      rows));

@@ -25,22 +25,17 @@
 #include "common/motion/model.h"
 #include "common/motion/pose_sequence.h"
 #include "preprocess/decomposition.h"
+#include "preprocess/options.h"
 #include "preprocess/pose/pose_space.h"
 
 namespace mdk {
 
-/// Whether the curves between keys are looked at.
-enum class BetweenKeys {
-  kBound,   ///< boxes hold at every time
-  kIgnore,  ///< boxes hold at keys only: what GFW06 has, and what tests compare with
-};
-
 /// Per triangle, in the order of `members.triangles`: its box in its cluster's local basis at all
-/// times of a segment. `local_from_world`: F * K as stored, key-major. Computed in double, rounded
-/// outward. Cost: O(keys of the segment * vertices); runs in parallel.
+/// times of a segment, or at its keys. `local_from_world`: F * K as stored, key-major. Computed in
+/// double, rounded outward. Cost: O(keys of the segment * vertices); runs in parallel.
 std::vector<Aabb> fuzzy_boxes(const PoseSequence& sequence, const ClusterMembers& members,
                               std::span<const Affine3f> local_from_world, const Segment& keys,
-                              BetweenKeys between = BetweenKeys::kBound);
+                              BetweenKeys between);
 
 /// Per triangle, in the order of `members.triangles`: a box that holds it in every pose of the
 /// space, in its cluster's basis. `bones`: K. Throws Error (kBadInput) where a bone that must be

@@ -88,7 +88,8 @@ class SegmentBoxes {
     std::vector<Aabb> boxes(sequence_.triangles.size());
     for (const Segment& stretch : stretches_of(sequence_, segment)) {
       const std::vector<Aabb> more =
-          fuzzy_boxes(sequence_, decomposition_.members, maps.local_from_world, stretch);
+          fuzzy_boxes(sequence_, decomposition_.members, maps.local_from_world, stretch,
+                      decomposition_.between);
       for (std::size_t t = 0; t < boxes.size(); ++t) boxes[t].extend(more[t]);
       done_ += stretch.last_key - stretch.first_key;
       progress_.report("build", std::min(1.0, done_ / sequence_.key_count()));
@@ -116,6 +117,16 @@ ClusterWork cluster_work(const ModelView& model, std::uint32_t segment, std::siz
   work.hit_probability =
       mean_hit_probability<float>(world_boxes, model_areas.subspan(keys.first_key));
   for (const Aabb& box : model.cluster_fuzzy_boxes(segment, cluster)) work.fuzzy_boxes.add(box);
+  return work;
+}
+
+/// S * K, segment-major.
+std::vector<ClusterWork> all_work(const ModelView& model, std::span<const double> model_areas) {
+  const AreaWeightTable weights(model.local_from_world, model_areas);
+  std::vector<ClusterWork> work;
+  for (std::uint32_t s = 0; s < model.segments.size(); ++s)
+    for (std::size_t c = 0; c < model.clusters.size(); ++c)
+      work.push_back(cluster_work(model, s, c, weights, model_areas));
   return work;
 }
 
@@ -190,6 +201,13 @@ bool rig_is_smallest(const PoseSequence& sequence) {
   return sequence.rig && sequence.rig->bytes() < sequence.positions.size() * sizeof(Vec3f);
 }
 
+double predicted_cost(const ModelView& model) {
+  std::vector<double> model_areas;
+  for (const Aabb& box : model.key_boxes)
+    model_areas.push_back(static_cast<double>(surface_area(box)));
+  return mean_work(model.segments, all_work(model, model_areas));
+}
+
 AssembledModel assemble_model(PoseSequence sequence, Decomposition decomposition,
                               double boxes_until, ProgressSink& progress) {
   progress.report("build", 0);
@@ -199,6 +217,7 @@ AssembledModel assemble_model(PoseSequence sequence, Decomposition decomposition
   model.rest_key = decomposition.growth.rest_key;
   model.rest_diagonal = diagonal(pose_box(sequence.pose(model.rest_key)));
   model.segments = std::move(decomposition.segments);
+  model.holds_between_keys = decomposition.between == BetweenKeys::kBound;
   model.clusters = cluster_ranges(members);
   model.fuzzy_boxes.reserve(model.segments.size() * sequence.triangles.size());
   {
@@ -214,12 +233,7 @@ AssembledModel assemble_model(PoseSequence sequence, Decomposition decomposition
 
   const std::vector<double> model_areas = pose_box_areas(sequence);
   progress.report("build", boxes_until);
-  const AreaWeightTable weights(model.local_from_world, model_areas);
-  const ModelView view = model.view();
-  std::vector<ClusterWork> work;
-  for (std::uint32_t s = 0; s < model.segments.size(); ++s)
-    for (std::size_t c = 0; c < model.clusters.size(); ++c)
-      work.push_back(cluster_work(view, s, c, weights, model_areas));
+  const std::vector<ClusterWork> work = all_work(model.view(), model_areas);
   result.expected_work = mean_work(model.segments, work);
   build_fuzzy_trees(model, work);
 

@@ -13,6 +13,10 @@ struct AssembledModel {
   double expected_work = 0;  ///< of a ray that hits the model, mean over time (cost.h)
 };
 
+/// What the cost (cost.h) expects of a finished model: AssembledModel::expected_work, but for the
+/// rounding of the boxes of poses. Cost: O(boxes and maps).
+double predicted_cost(const ModelView& model);
+
 /// Whether the model of a sequence keeps its rig: where there is one that takes less room than the
 /// positions.
 bool rig_is_smallest(const PoseSequence& sequence);

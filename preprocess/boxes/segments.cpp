@@ -130,12 +130,12 @@ class RunWork {
 
 RunCosts run_costs(const PoseSequence& sequence, const ClusterMembers& members,
                    std::span<const Affine3f> local_from_world, const Blocks& blocks,
-                   std::uint32_t longest) {
+                   std::uint32_t longest, BetweenKeys between) {
   const Sample sample =
       sample_triangles(sequence, members, std::max(kBoxes / blocks.count(), kMinTriangles));
   std::vector<std::vector<Aabb>> boxes;
   for (const Segment& keys : blocks.keys)
-    boxes.push_back(fuzzy_boxes(sequence, sample.members, local_from_world, keys));
+    boxes.push_back(fuzzy_boxes(sequence, sample.members, local_from_world, keys, between));
   const AreaWeightTable weights(local_from_world, pose_box_areas(sequence));
   const RunWork work(blocks, sample, weights);
   RunCosts costs(blocks.count(), longest);
@@ -182,7 +182,7 @@ std::vector<Segment> smallest_segments(std::span<const Clip> clips) {
 
 std::vector<Segment> choose_segments(const PoseSequence& sequence, const ClusterMembers& members,
                                      std::span<const Affine3f> local_from_world,
-                                     std::uint32_t count) {
+                                     std::uint32_t count, BetweenKeys between) {
   const std::vector<Segment> smallest = smallest_segments(sequence.clips);
   const auto max_count = static_cast<std::uint32_t>(smallest.size());
   count = std::min(count, max_count);
@@ -196,8 +196,8 @@ std::vector<Segment> choose_segments(const PoseSequence& sequence, const Cluster
   const std::size_t even = count == 0 ? blocks.count() : blocks.count() / count;
   const std::size_t longest =
       std::min<std::size_t>(blocks.count(), std::max(4 * even, kRuns / blocks.count()));
-  const RunCosts costs =
-      run_costs(sequence, members, local_from_world, blocks, static_cast<std::uint32_t>(longest));
+  const RunCosts costs = run_costs(sequence, members, local_from_world, blocks,
+                                   static_cast<std::uint32_t>(longest), between);
   const std::vector<std::uint32_t> runs =
       count == 0 ? cheapest_runs(costs, kPricePerByte * kBytesPerTriangle)
                  : cheapest_runs_of_count(costs, count);

@@ -18,6 +18,7 @@
 #include "common/motion/model.h"
 #include "common/motion/pose_sequence.h"
 #include "preprocess/decomposition.h"
+#include "preprocess/options.h"
 
 namespace mdk {
 
@@ -30,7 +31,7 @@ std::vector<Segment> smallest_segments(std::span<const Clip> clips);
 /// few thousand triangles, and a few thousand unions of those.
 std::vector<Segment> choose_segments(const PoseSequence& sequence, const ClusterMembers& members,
                                      std::span<const Affine3f> local_from_world,
-                                     std::uint32_t count);
+                                     std::uint32_t count, BetweenKeys between);
 
 /// What each run of up to `longest` consecutive blocks costs.
 struct RunCosts {

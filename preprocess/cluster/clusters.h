@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
 #include <vector>
 
 #include "common/base/parallel.h"
@@ -12,6 +11,7 @@
 #include "preprocess/decomposition.h"
 #include "preprocess/options.h"
 #include "preprocess/pose/pose_space.h"
+#include "preprocess/pose/pose_table.h"
 
 namespace mdk {
 
@@ -27,8 +27,8 @@ struct PaperClusters : Growth {
   std::vector<Affine3d> local_from_rest;  ///< K: see LocalFrames
 };
 
-/// Grown on a farthest-point sample of the keys, then relaxed on as many as a work budget allows.
-/// `unit`: see pose_unit.
+/// Grown on a farthest-point sample of the keys, then relaxed on as many as a work budget allows;
+/// the rest pose is searched again among all keys at the end. `unit`: see pose_unit.
 PaperClusters cluster_by_residuals(const PoseSequence& sequence, const ClusterRequest& request,
                                    double unit, ProgressSink& progress);
 
@@ -36,9 +36,10 @@ struct BoneClusters : Assignment {
   std::vector<std::uint32_t> bones;  ///< K, rising: the bone of each cluster; each has triangles
 };
 
-/// Judges boxes over `keys` (rising) and, where there is one, over a pose space. The sequence has a
-/// rig. Cost: O(keys * bone weights).
-BoneClusters assign_to_bones(const PoseSequence& sequence, std::span<const std::uint32_t> keys,
+/// Judges boxes over the keys of the table, in all bones' bases; or, where there is one, over a
+/// pose space, too, in those of the bones that move a corner. The sequence has a rig. Cost: at most
+/// O(bones * rows * vertices), mostly O(bones * vertices).
+BoneClusters assign_to_bones(const PoseSequence& sequence, const PoseTable& table,
                              const PoseSpace* space);
 
 }  // namespace mdk

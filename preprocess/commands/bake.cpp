@@ -46,8 +46,8 @@ void check_decompose_options(const DecomposeOptions& options) {
   refuse_where(is_pose_space && options.segments > 1,
                "--segments " + std::to_string(options.segments) +
                    ": a pose space has no time to be cut; leave --segments out");
-  refuse_where(options.clusters > 0 && has_stop,
-               "--clusters N and --stop PCT contradict each other; give one of them");
+  refuse_where(is_pose_space && options.between == BetweenKeys::kIgnore,
+               "--between-keys off: a pose space holds between keys, too; leave it out");
   refuse_where(options.mode == DecomposeMode::kNone && (options.clusters > 1 || has_stop),
                "--decompose none makes one cluster per mesh; leave --clusters and --stop out");
   refuse_where(options.mode == DecomposeMode::kBones && (options.clusters > 0 || has_stop),
@@ -106,6 +106,7 @@ std::string bake_report_json(const ModelView& model, const DecomposeStats& stats
       {"clips", clips},
       {"clusters", model.cluster_count()},
       {"segments", model.segment_count()},
+      {"between_keys", model.holds_between_keys},
       {"rest_key", stats.rest_key},
       {"stop_reason", stats.stop_reason},
       {"residual_rms", stats.residual_rms},
@@ -137,7 +138,8 @@ std::string bake_summary(const ModelView& model, const DecomposeStats& stats,
          grouped_text(model.vertex_count) + " vertices, " + count(model.key_count(), "key") +
          " in " + count(model.clips.size(), "clip") + "\n  " +
          count(model.cluster_count(), "cluster") + " (" + stop_text(stats.stop_reason) + "), " +
-         count(model.segment_count(), "time segment") + ", rest pose key " +
+         count(model.segment_count(), "time segment") +
+         (model.holds_between_keys ? "" : ", boxes at keys only") + ", rest pose key " +
          std::to_string(stats.rest_key) + ", residual " + percent(stats.residual_rms) + " rms, " +
          percent(stats.residual_max) + " at most of the diagonal, cost " +
          fixed_text(stats.sah_cost, 1) + "\n  " + bytes_text(outcome.file_bytes) + " in " +
@@ -299,13 +301,14 @@ void add_decompose_options(Command& command, DecomposeOptions& options) {
       "90", options.joint_limit_degrees,
       real_where([](double x) { return x >= 0 && x <= 180; }, "degrees from 0 to 180"));
   command.add_value("--clusters", "auto|N",
-                    "How many clusters: as many as pay, or exactly N, at least 1 (default: auto).",
+                    "How many clusters: as many as pay, at most 80, or exactly N, at least 1\n"
+                    "(default: auto).",
                     "auto", options.clusters, parse_auto_count);
   command.add_value(
       "--stop", "cost|PCT",
       "When to stop adding clusters: cost, when more would make rays more expensive; a\n"
       "percentage above 0 and below 100: cluster by residual motion, as in the paper,\n"
-      "until another cluster lowers it by less (default: cost).",
+      "until another cluster lowers it by less, or up to --clusters N (default: cost).",
       "cost", options.stop_percent,
       unless("cost", real_where([](double x) { return x > 0 && x < 100; },
                                 "cost, or a percentage above 0 and below 100")));
@@ -325,6 +328,12 @@ void add_decompose_options(Command& command, DecomposeOptions& options) {
       "Into how many stretches of time, each with boxes and trees of its own: as many\n"
       "as their memory pays, or exactly N, at least 1 (default: auto).",
       "auto", options.segments, parse_auto_count);
+  command.add_value(
+      "--between-keys", "on|off",
+      "What boxes hold for. on: every time; off: keys only, as in the paper, so that only\n"
+      "keys can be traced: a time between two is taken as the nearer one (default: on).",
+      "on", options.between,
+      one_of<BetweenKeys>({{"on", BetweenKeys::kBound}, {"off", BetweenKeys::kIgnore}}));
   command.add_value(
       "--refine", "on|off",
       "Whether to refine the clusters' maps towards the smallest boxes (default: on).", "on",

@@ -264,8 +264,9 @@ std::vector<CheckResult> check_boxes(const ModelView& model, std::span<const Key
   check_all(
       model.key_count(), [](std::size_t i) { return at_key(static_cast<std::uint32_t>(i)); },
       when[0]);
-  check_all(
-      between.size(), [&](std::size_t i) { return between[i]; }, when[1]);
+  if (model.holds_between_keys)
+    check_all(
+        between.size(), [&](std::size_t i) { return between[i]; }, when[1]);
   return results;
 }
 

@@ -164,6 +164,7 @@ void print_json(const MdkFile& file, const InfoArguments& arguments) {
       {"keys", model.key_count()},
       {"clips", json_of_clips(model)},
       {"segments", json_of_segments(model)},
+      {"between_keys", model.holds_between_keys},
       {"clusters", model.cluster_count()},
       {"smallest_cluster_triangles", sizes.smallest},
       {"largest_cluster_triangles", sizes.largest},
@@ -228,6 +229,9 @@ void print_facts(const MdkFile& file, const InfoArguments& arguments) {
                                  grouped_text(sizes.smallest) + " to " +
                                  grouped_text(sizes.largest) + " triangles)"});
   facts.add_row({"time segments", segments_text(model)});
+  facts.add_row({"boxes hold", model.holds_between_keys
+                                   ? "at every time"
+                                   : "at keys only: a time between keys is shown as the nearest"});
   facts.add_row({"fuzzy kd-trees", grouped_text(model.kd_nodes.size()) + " nodes, " +
                                        grouped_text(model.kd_refs.size()) + " references"});
   facts.add_row({"rest pose", "key " + std::to_string(model.rest_key) + " (" +

@@ -65,7 +65,8 @@ PlannedFrame frame_at_time(const ModelView& model, std::uint32_t clip, double se
     throw Error(ErrorCode::kUsage, "--time " + shortest_text(seconds) + ": clip " +
                                        model.clips[clip].name + " runs from 0 to " +
                                        fixed_text(length, 6) + " s");
-  return {locate_time(model, clip, seconds), clip, seconds};
+  const KeyInterval at = locate_time(model, clip, seconds);
+  return {at, clip, model.holds_between_keys ? seconds : model.key_times[at.key0]};
 }
 
 /// --frames or --time or, without either, every key of the clip.
@@ -252,6 +253,7 @@ void run_render(const RenderArguments& arguments, CommandContext& context) {
                          {"technique", arguments.technique},
                          {"shading", shading_id(arguments.view.shading)},
                          {"samples", arguments.view.samples},
+                         {"between_keys", model.holds_between_keys},
                          {"frames", rows}};
     write_text_file(arguments.stats,
                     report.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
@@ -313,7 +315,7 @@ void add_render_command(Command& command) {
   command
       .add_value("--cache", "SIZE",
                  "Of scenes: what is worked out of the instances that rays enter takes no more\n"
-                 "memory than this (default: 64M). Key poses of the models come on top.",
+                 "memory than this, key poses included (default: 64M). Changes no picture.",
                  "64M", arguments->cache_bytes,
                  [](const std::string& text) { return parse_size(text); })
       .with(OptionEffect::kNone);

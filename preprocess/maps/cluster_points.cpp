@@ -163,20 +163,22 @@ FaceSums face_sums(const ClusterPoints& points, const PointBoxes& boxes) {
   return sums;
 }
 
-std::vector<float> triangle_areas(const ClusterPoints& points, const PointBoxes& boxes,
+std::vector<float> triangle_areas(const ClusterPoints& points, PointBoxes& boxes,
                                   const AreaWeights& weights) {
   std::vector<float> areas(points.triangle_count());
-  for (std::size_t t = 0; t < areas.size(); ++t)
-    areas[t] = boxes.triangle_area(&points.corners[3 * t], weights);
+  triangle_box_areas(points.corners.data(), areas.size(), boxes.row(), to_float(weights).w,
+                     areas.data());
   return areas;
 }
 
 PointBoxes mapped_boxes(const ClusterPoints& points, std::span<const Affine3d> maps) {
   PointBoxes boxes;
   boxes.reset(points.stride);
-  const BoxRow sides = boxes.row();
-  for (std::uint32_t row = 0; row < points.row_count; ++row)
-    extend_boxes(to_float(maps[row]), points.row(row), points.stride, sides);
+  std::vector<Affine3f> narrow;
+  narrow.reserve(maps.size());
+  for (const Affine3d& map : maps) narrow.push_back(to_float(map));
+  extend_boxes({narrow.data(), points.row_count, 1, points.from(0), points.stride}, points.stride,
+               boxes.row());
   return boxes;
 }
 

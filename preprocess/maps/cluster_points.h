@@ -83,10 +83,16 @@ struct PointBoxes {
     }
     return box;
   }
-  float triangle_area(const std::uint32_t* corners, const AreaWeights& weights) const {
-    return static_cast<float>(weights.area(to_double(triangle(corners).extent())));
-  }
 };
+
+/// Weights as kernels take them.
+struct FloatWeights {
+  float w[3];  ///< xy, yz, zx
+};
+inline FloatWeights to_float(const AreaWeights& weights) {
+  return {{static_cast<float>(weights.xy), static_cast<float>(weights.yz),
+           static_cast<float>(weights.zx)}};
+}
 
 /// `maps`: R, from centred row coordinates. Cost: O(rows * vertices).
 PointBoxes mapped_boxes(const ClusterPoints& points, std::span<const Affine3d> maps);
@@ -95,7 +101,7 @@ PointBoxes mapped_boxes(const ClusterPoints& points, std::span<const Affine3d> m
 FaceSums face_sums(const ClusterPoints& points, const PointBoxes& boxes);
 
 /// Area of each triangle's box.
-std::vector<float> triangle_areas(const ClusterPoints& points, const PointBoxes& boxes,
+std::vector<float> triangle_areas(const ClusterPoints& points, PointBoxes& boxes,
                                   const AreaWeights& weights);
 
 /// First each map, then `turn`.

@@ -73,18 +73,20 @@ std::vector<double> cluster_areas(const ClusterMembers& members, std::span<const
 
 std::vector<double> areas_at_all_times(const PoseSequence& sequence, const ClusterMembers& members,
                                        std::span<const Affine3f> maps,
-                                       std::span<const double> model_areas) {
+                                       std::span<const double> model_areas, BetweenKeys between) {
   const Segment all{0, sequence.key_count() - 1};
-  return cluster_areas(members, maps, fuzzy_boxes(sequence, members, maps, all), model_areas);
+  return cluster_areas(members, maps, fuzzy_boxes(sequence, members, maps, all, between),
+                       model_areas);
 }
 
 /// Puts the refined maps of those clusters in place that they make cheaper at all times.
 void accept_better(const PoseSequence& sequence, const ClusterMembers& members,
                    std::span<const Affine3f> refined, std::span<const double> model_areas,
-                   KeyMaps& plain) {
+                   BetweenKeys between, KeyMaps& plain) {
   const std::vector<double> before =
-      areas_at_all_times(sequence, members, plain.local_from_world, model_areas);
-  const std::vector<double> after = areas_at_all_times(sequence, members, refined, model_areas);
+      areas_at_all_times(sequence, members, plain.local_from_world, model_areas, between);
+  const std::vector<double> after =
+      areas_at_all_times(sequence, members, refined, model_areas, between);
   const std::size_t clusters = members.cluster_count();
   double sum_before = 0, sum_after = 0;
   for (std::size_t c = 0; c < clusters; ++c) {
@@ -165,7 +167,8 @@ KeyMaps fit_small_boxes(const PoseSequence& sequence, const ClusterMembers& memb
         });
   }
   report(kFitted);
-  if (request.refine) accept_better(sequence, members, refined, measure.model_areas, plain);
+  if (request.refine)
+    accept_better(sequence, members, refined, measure.model_areas, request.between, plain);
   plain.residual = residual_stats(sequence, members, plain.local_from_world, request.rest_key);
   return plain;
 }
@@ -222,16 +225,22 @@ std::vector<Affine3d> base_from_world(const Rig& rig, std::uint32_t bone,
   return maps;
 }
 
+std::vector<Affine3d> base_from_table(const Rig& rig, std::uint32_t bone, const PoseTable& table,
+                                      std::uint32_t key_count) {
+  std::vector<Affine3d> maps = base_from_world(rig, bone, table.keys, key_count);
+  for (std::size_t row = 0; row < maps.size(); ++row)
+    maps[row] = scaled(1 / table.unit) * maps[row] * moved(table.centers[row]) * scaled(table.unit);
+  return maps;
+}
+
 std::vector<ClusterBone> choose_bone_bases(const PoseSequence& sequence, const PoseTable& table,
                                            const ClusterMembers& members,
                                            std::span<const std::uint32_t> bones) {
   std::vector<Affine3d> maps;  // cluster-major, in table units on both sides
   for (const std::uint32_t bone : bones) {
-    const std::vector<Affine3d> from_world =
-        base_from_world(*sequence.rig, bone, table.keys, sequence.key_count());
-    for (std::size_t row = 0; row < from_world.size(); ++row)
-      maps.push_back(scaled(1 / table.unit) * from_world[row] * moved(table.centers[row]) *
-                     scaled(table.unit));
+    const std::vector<Affine3d> from_table =
+        base_from_table(*sequence.rig, bone, table, sequence.key_count());
+    maps.insert(maps.end(), from_table.begin(), from_table.end());
   }
   const LocalFrames frames = choose_local_frames(table, members, maps);
   std::vector<ClusterBone> result;

@@ -10,6 +10,7 @@
 #include "common/math/affine3.h"
 #include "common/motion/pose_sequence.h"
 #include "preprocess/decomposition.h"
+#include "preprocess/options.h"
 #include "preprocess/pose/pose_table.h"
 
 namespace mdk {
@@ -19,6 +20,7 @@ struct KeyMapRequest {
   std::uint32_t rest_key = 0;
   double unit = 1;  ///< see pose_unit
   bool refine = true;
+  BetweenKeys between = BetweenKeys::kBound;  ///< at which times boxes are compared
 };
 
 /// Maps towards small boxes, cluster by cluster at all keys: least squares, the rotation that suits
@@ -41,6 +43,10 @@ KeyMaps identity_key_maps(const PoseSequence& sequence, const ClusterMembers& me
 /// part of the nearest key before that has one (or the first after) goes on with the bone's origin.
 std::vector<Affine3d> base_from_world(const Rig& rig, std::uint32_t bone,
                                       std::span<const std::uint32_t> keys, std::uint32_t key_count);
+
+/// The same for the rows of a table, from table coordinates, in table units on both sides.
+std::vector<Affine3d> base_from_table(const Rig& rig, std::uint32_t bone, const PoseTable& table,
+                                      std::uint32_t key_count);
 
 /// A basis for each cluster, from its bone's base space: turned so that its triangles' boxes over
 /// the table's keys are small (maps/local_frame.h). `bones`: K.

@@ -10,7 +10,8 @@
 //
 // which weighs the extreme keys and forgets the others. L-BFGS (Ceres) descends in the coordinates
 // in which every key's points have unit scatter, where all entries of a map count alike. It needs
-// sums and square roots alone, which are the same on every machine.
+// sums and square roots alone, which are the same on every machine. A step that would turn the sign
+// of a map's determinant is none: the descent shortens it, so no map mirrors that did not before.
 #include <ceres/ceres.h>
 
 #include <Eigen/Dense>
@@ -98,6 +99,8 @@ class SmoothCost final : public ceres::FirstOrderFunction {
       for (float& v : s) v = std::max(v, std::max(least, 1e-12f));
     const AreaWeights caps = area_weight_caps(maps, areas_);
     caps_ = {caps.yz, caps.zx, caps.xy};
+    is_mirrored_.clear();
+    for (const Affine3d& map : maps) is_mirrored_.push_back(map.determinant() < 0);
     unit_ = 1;
     double value = 0;
     std::vector<double> start = parameters_of(maps);
@@ -136,6 +139,7 @@ class SmoothCost final : public ceres::FirstOrderFunction {
   }
 
   bool Evaluate(const double* parameters, double* value, double* gradient) const override {
+    if (turns_a_map_over(parameters)) return false;
     Norms norms = vertex_norms(parameters);
     const Sides weights = mean_weights(parameters);
     Norms pull;
@@ -165,6 +169,15 @@ class SmoothCost final : public ceres::FirstOrderFunction {
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j) white(i, j) = row_parameters[4 * i + j];
     return white * white_.inverse[row];
+  }
+
+  /// Whether the determinant of any map has another sign than at the start, or none.
+  bool turns_a_map_over(const double* parameters) const {
+    for (std::size_t row = 0; row < points_.row_count; ++row) {
+      const double det = linear_part(parameters + kParametersPerRow * row, row).determinant();
+      if (!(is_mirrored_[row] ? det < 0 : det > 0)) return true;
+    }
+    return false;
   }
 
   /// What a side with unit extents is worth in the world under a map with this linear part.
@@ -296,7 +309,8 @@ class SmoothCost final : public ceres::FirstOrderFunction {
   std::vector<float> middle_[3], scale_[3];
   float mean_extent_[3] = {};
   Sides caps_{};
-  double unit_ = 1;  ///< makes the start's cost 1
+  std::vector<bool> is_mirrored_;  ///< R: at the start
+  double unit_ = 1;                ///< makes the start's cost 1
 };
 
 }  // namespace

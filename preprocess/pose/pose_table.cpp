@@ -187,10 +187,12 @@ PoseTable make_pose_table(const PoseSequence& sequence, std::span<const std::uin
 }
 
 PoseTable sample_poses(const PoseSequence& sequence, std::size_t count,
-                       std::optional<std::uint32_t> also, double unit) {
+                       std::span<const std::uint32_t> also, double unit) {
   std::vector<std::uint32_t> keys = sample_keys(sequence, count);
-  if (also && !std::binary_search(keys.begin(), keys.end(), *also))
-    keys.insert(std::lower_bound(keys.begin(), keys.end(), *also), *also);
+  for (const std::uint32_t key : also)
+    if (const auto at = std::lower_bound(keys.begin(), keys.end(), key);
+        at == keys.end() || *at != key)
+      keys.insert(at, key);
   return make_pose_table(sequence, keys, unit);
 }
 

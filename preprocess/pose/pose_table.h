@@ -8,7 +8,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -94,7 +93,7 @@ PoseTable make_pose_table(const PoseSequence& sequence, std::span<const std::uin
 
 /// A table of up to `count` sampled keys and of `also`.
 PoseTable sample_poses(const PoseSequence& sequence, std::size_t count,
-                       std::optional<std::uint32_t> also, double unit);
+                       std::span<const std::uint32_t> also, double unit);
 
 /// The chosen vertices of all rows, row by row.
 PointArrays gather_vertices(const PoseTable& table, std::span<const std::uint32_t> vertices);

@@ -3,6 +3,8 @@
 // adds up the same points in the same order.
 #include "preprocess/simd/point_kernels.h"
 
+#include <algorithm>
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "preprocess/simd/point_kernels.cpp"
 #include <hwy/foreach_target.h>
@@ -117,31 +119,95 @@ struct MapRow {
   }
 };
 
-HWY_INLINE void extend_side(FloatVec p, float* lo, float* hi) {
-  const FloatTag d;
-  hn::StoreU(hn::Min(hn::LoadU(d, lo), p), d, lo);
-  hn::StoreU(hn::Max(hn::LoadU(d, hi), p), d, hi);
-}
+/// Boxes of as many points as a vector has lanes, kept in registers over all rows.
+struct BoxVec {
+  FloatVec lo[3], hi[3];
 
-void Extend(const Affine3f& map, const PointRow& points, std::size_t n, const BoxRow& boxes) {
+  HWY_INLINE BoxVec(const BoxRow& boxes, std::size_t i) {
+    const FloatTag d;
+    for (int axis = 0; axis < 3; ++axis) {
+      lo[axis] = hn::LoadU(d, boxes.lo[axis] + i);
+      hi[axis] = hn::LoadU(d, boxes.hi[axis] + i);
+    }
+  }
+  HWY_INLINE void extend(int axis, FloatVec p) {
+    lo[axis] = hn::Min(lo[axis], p);
+    hi[axis] = hn::Max(hi[axis], p);
+  }
+  HWY_INLINE void store(const BoxRow& boxes, std::size_t i) const {
+    const FloatTag d;
+    for (int axis = 0; axis < 3; ++axis) {
+      hn::StoreU(lo[axis], d, boxes.lo[axis] + i);
+      hn::StoreU(hi[axis], d, boxes.hi[axis] + i);
+    }
+  }
+};
+
+void Extend(const MappedRows& rows, std::size_t n, const BoxRow& boxes) {
   const FloatTag d;
-  const MapRow first(map.m[0]), second(map.m[1]), third(map.m[2]);
   std::size_t i = 0;
   for (; i + hn::Lanes(d) <= n; i += hn::Lanes(d)) {
-    const FloatVec x = hn::LoadU(d, points.x + i), y = hn::LoadU(d, points.y + i),
-                   z = hn::LoadU(d, points.z + i);
-    extend_side(first.of(x, y, z), boxes.lo[0] + i, boxes.hi[0] + i);
-    extend_side(second.of(x, y, z), boxes.lo[1] + i, boxes.hi[1] + i);
-    extend_side(third.of(x, y, z), boxes.lo[2] + i, boxes.hi[2] + i);
+    BoxVec box(boxes, i);
+    for (std::size_t row = 0; row < rows.count; ++row) {
+      const Affine3f& map = rows.maps[row * rows.map_step];
+      const std::size_t at = row * rows.stride + i;
+      const FloatVec x = hn::LoadU(d, rows.first.x + at), y = hn::LoadU(d, rows.first.y + at),
+                     z = hn::LoadU(d, rows.first.z + at);
+      box.extend(0, MapRow(map.m[0]).of(x, y, z));
+      box.extend(1, MapRow(map.m[1]).of(x, y, z));
+      box.extend(2, MapRow(map.m[2]).of(x, y, z));
+    }
+    box.store(boxes, i);
   }
   for (; i < n; ++i)
+    for (std::size_t row = 0; row < rows.count; ++row)
+      for (int axis = 0; axis < 3; ++axis) {
+        const float* m = rows.maps[row * rows.map_step].m[axis];
+        const std::size_t at = row * rows.stride + i;
+        const float p =
+            m[0] * rows.first.x[at] + m[1] * rows.first.y[at] + m[2] * rows.first.z[at] + m[3];
+        float &lo = boxes.lo[axis][i], &hi = boxes.hi[axis][i];
+        lo = p < lo ? p : lo;
+        hi = p > hi ? p : hi;
+      }
+}
+
+void TriangleAreas(const std::uint32_t* corners, std::size_t triangles, const BoxRow& boxes,
+                   const float (&weights)[3], float* areas) {
+  const FloatTag d;
+  const hn::Rebind<std::int32_t, FloatTag> di;
+  const hn::Rebind<std::uint32_t, FloatTag> du;
+  const FloatVec xy = hn::Set(d, weights[0]), yz = hn::Set(d, weights[1]),
+                 zx = hn::Set(d, weights[2]);
+  std::size_t t = 0;
+  for (; t + hn::Lanes(d) <= triangles; t += hn::Lanes(d)) {
+    hn::Vec<decltype(du)> a, b, c;
+    hn::LoadInterleaved3(du, corners + 3 * t, a, b, c);
+    const auto extent = [&](int axis) {
+      const auto of = [&](const float* side, auto corner) {
+        return hn::GatherIndex(d, side, hn::BitCast(di, corner));
+      };
+      const float *l = boxes.lo[axis], *h = boxes.hi[axis];
+      return hn::Sub(hn::Max(hn::Max(of(h, a), of(h, b)), of(h, c)),
+                     hn::Min(hn::Min(of(l, a), of(l, b)), of(l, c)));
+    };
+    const FloatVec x = extent(0), y = extent(1), z = extent(2);
+    const FloatVec sum = hn::Add(hn::Add(hn::Mul(hn::Mul(xy, x), y), hn::Mul(hn::Mul(yz, y), z)),
+                                 hn::Mul(hn::Mul(zx, z), x));
+    hn::StoreU(hn::Add(sum, sum), d, areas + t);
+  }
+  for (; t < triangles; ++t) {
+    float e[3];
     for (int axis = 0; axis < 3; ++axis) {
-      const float* m = map.m[axis];
-      const float p = m[0] * points.x[i] + m[1] * points.y[i] + m[2] * points.z[i] + m[3];
-      float &lo = boxes.lo[axis][i], &hi = boxes.hi[axis][i];
-      lo = p < lo ? p : lo;
-      hi = p > hi ? p : hi;
+      const float *l = boxes.lo[axis], *h = boxes.hi[axis];
+      const std::uint32_t* v = corners + 3 * t;
+      e[axis] = std::max(std::max(h[v[0]], h[v[1]]), h[v[2]]) -
+                std::min(std::min(l[v[0]], l[v[1]]), l[v[2]]);
     }
+    const float sum =
+        (weights[0] * e[0] * e[1] + weights[1] * e[1] * e[2]) + weights[2] * e[2] * e[0];
+    areas[t] = sum + sum;
+  }
 }
 
 void AddDistances(const Affine3f& map, const PointRow& points, const PointRow& targets,
@@ -219,7 +285,7 @@ void AddPulls(const ScaledCoordinate& u, const PointRow& points, const float* we
 
 }  // namespace points
 using points::AddDistances, points::AddPowers, points::AddPulls;
-using points::Cross, points::Extend, points::Second;
+using points::Cross, points::Extend, points::Second, points::TriangleAreas;
 }  // namespace HWY_NAMESPACE
 }  // namespace mdk
 HWY_AFTER_NAMESPACE();
@@ -230,6 +296,7 @@ namespace mdk {
 HWY_EXPORT(Second);
 HWY_EXPORT(Cross);
 HWY_EXPORT(Extend);
+HWY_EXPORT(TriangleAreas);
 HWY_EXPORT(AddDistances);
 HWY_EXPORT(AddPowers);
 HWY_EXPORT(AddPulls);
@@ -245,8 +312,13 @@ void cross_moments(const PointRow& points, const PointRow& targets, const float*
   HWY_DYNAMIC_DISPATCH(Cross)(points, targets, weights, n, sum);
 }
 
-void extend_boxes(const Affine3f& map, const PointRow& points, std::size_t n, const BoxRow& boxes) {
-  HWY_DYNAMIC_DISPATCH(Extend)(map, points, n, boxes);
+void extend_boxes(const MappedRows& rows, std::size_t n, const BoxRow& boxes) {
+  HWY_DYNAMIC_DISPATCH(Extend)(rows, n, boxes);
+}
+
+void triangle_box_areas(const std::uint32_t* corners, std::size_t triangles, const BoxRow& boxes,
+                        const float (&weights)[3], float* areas) {
+  HWY_DYNAMIC_DISPATCH(TriangleAreas)(corners, triangles, boxes, weights, areas);
 }
 
 void add_squared_distances(const Affine3f& map, const PointRow& points, const PointRow& targets,

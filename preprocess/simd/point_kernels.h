@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 
 #include "common/math/affine3.h"
 
@@ -35,8 +36,28 @@ struct BoxRow {
   float *lo[3], *hi[3];
 };
 
-/// Grows box i until it holds map(point i), for all i below n. Any n.
-void extend_boxes(const Affine3f& map, const PointRow& points, std::size_t n, const BoxRow& boxes);
+/// Rows of points, each with its map: row k starts `stride` after row k - 1, and its map is
+/// maps[k * map_step].
+struct MappedRows {
+  const Affine3f* maps;
+  std::size_t count, map_step;
+  PointRow first;
+  std::size_t stride;
+};
+
+/// Grows box i until it holds map(point i) of every row, for all i below n. Any n.
+void extend_boxes(const MappedRows& rows, std::size_t n, const BoxRow& boxes);
+
+/// Of one row.
+inline void extend_boxes(const Affine3f& map, const PointRow& points, std::size_t n,
+                         const BoxRow& boxes) {
+  extend_boxes({&map, 1, 1, points, 0}, n, boxes);
+}
+
+/// areas[t] = 2 (w0 x y + w1 y z + w2 z x), with (x, y, z) the extent of the box of boxes
+/// corners[3 t], [3 t + 1] and [3 t + 2]; corners are below 2^31.
+void triangle_box_areas(const std::uint32_t* corners, std::size_t triangles, const BoxRow& boxes,
+                        const float (&weights)[3], float* areas);
 
 /// out[i] += |map(point i) - target i|^2, for all i below n. Any n.
 void add_squared_distances(const Affine3f& map, const PointRow& points, const PointRow& targets,

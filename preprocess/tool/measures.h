@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -16,6 +17,31 @@ inline double median(std::vector<double> values) {
   std::sort(values.begin(), values.end());
   const std::size_t half = values.size() / 2;
   return values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
+}
+
+/// Spearman's rank correlation of two lists of one length, 1 to -1; equal values share the mean of
+/// their ranks. 0 where one of them is constant.
+inline double rank_correlation(const std::vector<double>& a, const std::vector<double>& b) {
+  const auto ranks = [](const std::vector<double>& values) {
+    std::vector<double> rank;
+    for (const double v : values) {
+      double below = 0, same = 0;
+      for (const double other : values) {
+        below += other < v;
+        same += other == v;
+      }
+      rank.push_back(below + (same - 1) / 2 - (static_cast<double>(values.size()) - 1) / 2);
+    }
+    return rank;
+  };
+  const std::vector<double> x = ranks(a), y = ranks(b);
+  double xy = 0, xx = 0, yy = 0;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    xy += x[i] * y[i];
+    xx += x[i] * x[i];
+    yy += y[i] * y[i];
+  }
+  return xx > 0 && yy > 0 ? xy / std::sqrt(xx * yy) : 0;
 }
 
 /// Work per ray, amortised over the rays of a tile as TraceCounters has it.

@@ -4,11 +4,14 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <bit>
 #include <cmath>
 #include <numbers>
 #include <random>
+#include <thread>
 
+#include "common/base/error.h"
 #include "common/base/isa.h"
 #include "common/base/parallel.h"
 #include "common/motion/model_handle.h"
@@ -228,6 +231,20 @@ TEST(RayQuery, AListAtMixedTimesGivesWhatEachRayGivesOnAnyNumberOfThreads) {
   }
 }
 
+TEST(RayQuery, ATimeBetweenKeysIsRefusedWhereBoxesHoldAtKeysOnly) {
+  DecomposeResult baked = bake(std::move(test::agreement_scenes().front().sequence));
+  baked.model.holds_between_keys = false;
+  const ModelView model = baked.model.view();
+  const RayQuery query(ModelHandle::make(model));
+  const QueryRay ray{.origin = {0, 0, -10}, .direction = {0, 0, 1}};
+  EXPECT_NO_THROW(query.closest_hit(ray, at_key(1)));
+  EXPECT_NO_THROW(query.prepare(at_key(1)));
+  const KeyInterval between{0, 1, 0.5f};
+  EXPECT_THROW(query.closest_hit(ray, between), Error);
+  EXPECT_THROW(query.any_hit(ray, between), Error);
+  EXPECT_THROW(query.prepare(between), Error);
+}
+
 TEST(RayQuery, AMomentGivesBruteForcesHitsBeforeAndAfterItIsPosed) {
   const ResetIsa reset;
   for (auto& [name, sequence] : test::agreement_scenes()) {
@@ -262,6 +279,47 @@ TEST(RayQuery, AMomentGivesBruteForcesHitsBeforeAndAfterItIsPosed) {
       reset_isa();
     }
   }
+}
+
+TEST(RayQuery, PosesStayWithinTheirLimitAndHitsAreTheSame) {
+  // Quantised, so that poses are decoded; room for three keys of many.
+  DecomposeOptions options;
+  options.quantize = 1e-4;
+  SilentProgress silent;
+  const DecomposeResult baked = decompose(test::bending_tube(20, 16, 24), options, silent);
+  const ModelView model = baked.model.view();
+  ASSERT_NE(model.poses.kind, PoseKind::kKeyPositions);
+  const std::size_t key_bytes = (model.vertex_count + 1) * sizeof(Vec3f);
+  const RayQuery all(ModelHandle::make(model)),
+      few(ModelHandle::make(model), RayQueryOptions{.max_pose_bytes = 3 * key_bytes});
+  const std::size_t all_before = all.bytes(), few_before = few.bytes();
+  RayMaker make(model, 31);
+  std::vector<QueryRay> rays;
+  std::vector<KeyInterval> times;
+  for (int i = 0; i < 3000; ++i) {
+    times.push_back(make.time());
+    rays.push_back(make.ray(times.back()));
+  }
+  std::vector<QueryHit> expected(rays.size()), hits(rays.size());
+  all.closest_hits(rays.data(), times.data(), expected.data(), rays.size());
+  for (const int threads : {1, 2}) {
+    const ThreadLimit limit(threads);
+    few.closest_hits(rays.data(), times.data(), hits.data(), rays.size());
+    for (std::size_t i = 0; i < rays.size(); ++i) EXPECT_TRUE(is_same(hits[i], expected[i])) << i;
+  }
+  // Threads that are not ours, more than there are places for.
+  std::vector<std::thread> others;
+  std::atomic<int> different = 0;
+  for (int t = 0; t < 6; ++t)
+    others.emplace_back([&, t] {
+      for (std::size_t i = static_cast<std::size_t>(t); i < rays.size(); i += 6)
+        different += is_same(few.closest_hit(rays[i], times[i]), expected[i]) ? 0 : 1;
+    });
+  for (std::thread& thread : others) thread.join();
+  EXPECT_EQ(different, 0);
+  EXPECT_EQ(all.bytes() - all_before, model.key_count() * key_bytes);
+  EXPECT_LE(few.bytes() - few_before,
+            std::max(3u, 2 * static_cast<unsigned>(thread_count())) * key_bytes);
 }
 
 TEST(RayQuery, RaysWithoutDirectionOrSenseHitNothing) {

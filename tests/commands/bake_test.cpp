@@ -36,10 +36,11 @@ TEST_F(Bake, TheReportHasExactlyTheFieldsOfTheContract) {
   const Json report = Json::parse(read_text(folder_.file("a.json")));
   EXPECT_EQ(names_of(report),
             (std::vector<std::string>{
-                "schema",      "input",        "read_through",      "triangles",    "vertices",
-                "keys",        "clips",        "clusters",          "segments",     "rest_key",
-                "stop_reason", "residual_rms", "residual_max",      "quantization", "sah_cost",
-                "refine_gain", "seconds",      "peak_memory_bytes", "file_bytes",   "growth"}));
+                "schema",   "input",       "read_through", "triangles",         "vertices",
+                "keys",     "clips",       "clusters",     "segments",          "between_keys",
+                "rest_key", "stop_reason", "residual_rms", "residual_max",      "quantization",
+                "sah_cost", "refine_gain", "seconds",      "peak_memory_bytes", "file_bytes",
+                "growth"}));
   EXPECT_EQ(names_of(report["seconds"]),
             (std::vector<std::string>{"read", "decompose", "build", "write", "total"}));
   EXPECT_EQ(report["schema"], "mdprep-bake/1");
@@ -95,6 +96,11 @@ TEST_F(Bake, OptionsReachTheDecomposition) {
   EXPECT_GT(report_with({"--clusters", "4"})["refine_gain"], 0.0);
   EXPECT_EQ(report_with({"--clusters", "4", "--refine", "off"})["refine_gain"], 0.0);
   EXPECT_EQ(report_with({"--stop", "50"})["stop_reason"], "percent");
+  const Json counted = report_with({"--stop", "50", "--clusters", "5"});
+  EXPECT_EQ(counted["stop_reason"], "count");
+  EXPECT_EQ(counted["clusters"], 5);
+  EXPECT_NE(counted["growth"], report_with({"--clusters", "5"})["growth"])
+      << "not by the paper's method";
   EXPECT_EQ(report_with({"--decompose", "none"})["clusters"], 2) << "a tube and a cube";
   EXPECT_EQ(report_with({"--decompose", "none"})["stop_reason"], "none");
   const Json bones = report_with({"--decompose", "bones"});
@@ -110,6 +116,54 @@ TEST_F(Bake, OptionsReachTheDecomposition) {
   EXPECT_EQ(report_with({"--fps", "10"})["keys"], 11 + 6);
   EXPECT_EQ(report_with({"--clips", "swing"})["keys"], 16);
   EXPECT_EQ(report_with({"--clips", "swing,bend"})["keys"], kSampleKeys);
+}
+
+TEST_F(Bake, BoxesOfKeysOnlyAreSaidInEveryReportAndTracedAtKeys) {
+  const std::string file = folder_.file("keys.mdk");
+  const auto json_of = [](const Outcome& run) {
+    EXPECT_EQ(run.status, 0) << run.err;
+    return Json::parse(run.out);
+  };
+  const Outcome bake = run_mdprep({"bake", source(), "-o", file, "--between-keys", "off",
+                                   "--report", folder_.file("keys.json")});
+  ASSERT_EQ(bake.status, 0) << bake.err;
+  EXPECT_THAT(bake.err, HasSubstr("boxes at keys only"));
+  EXPECT_EQ(Json::parse(read_text(folder_.file("keys.json")))["between_keys"], false);
+  EXPECT_EQ(json_of(run_mdprep({"info", file, "--json"}))["between_keys"], false);
+  EXPECT_EQ(json_of(run_mdprep({"info", baked(), "--json"}))["between_keys"], true);
+  EXPECT_THAT(run_mdprep({"info", file}).out, HasSubstr("at keys only"));
+  const Json verified = json_of(run_mdprep({"verify", file, "--json", "-q"}));
+  EXPECT_EQ(verified["between_keys"], false);
+  EXPECT_EQ(verified["samples"], 0);
+  EXPECT_EQ(verified["ok"], true);
+  EXPECT_THAT(run_mdprep({"verify", file, "-q"}).out, HasSubstr("no time between keys"));
+  const std::string bench = folder_.file("bench.json");
+  ASSERT_EQ(run_mdprep({"bench", file, "--techniques", "fuzzy-kdtree,fuzzy-bvh", "--size", "64x64",
+                        "--frames", "3", "--rounds", "1", "--json", bench, "-q"})
+                .status,
+            0);
+  const Json model = Json::parse(read_text(bench))["models"][0];
+  EXPECT_EQ(model["between_keys"], false);
+  for (const Json& technique : model["techniques"]) EXPECT_EQ(technique["hit_mismatches"], 0);
+
+  // A time between keys is the picture of the nearest key.
+  const auto picture = [&](std::vector<std::string> when, const std::string& name) {
+    std::vector<std::string> line = {"render", file,    "-o", folder_.file(name),
+                                     "--size", "64x64", "-q"};
+    line.insert(line.end(), when.begin(), when.end());
+    const Outcome run = run_mdprep(line);
+    EXPECT_EQ(run.status, 0) << run.err;
+    return read_text(folder_.file(name));
+  };
+  const std::string nearest = picture({"--frames", "3"}, "key.png");
+  const std::string stats = folder_.file("stats.json");
+  picture({"--time", "0.11", "--stats", stats}, "stats.png");
+  const Json rendered = Json::parse(read_text(stats));
+  EXPECT_EQ(rendered["between_keys"], false);
+  EXPECT_EQ(rendered["frames"][0]["key"], 3);
+  EXPECT_NEAR(rendered["frames"][0]["time"].get<double>(), 0.1, 1e-6) << "of the key shown";
+  EXPECT_EQ(picture({"--time", "0.11"}, "time.png"), nearest);
+  EXPECT_NE(picture({"--time", "0.4"}, "later.png"), nearest);
 }
 
 TEST_F(Bake, TheDepfileNamesEveryFileThatWasRead) {

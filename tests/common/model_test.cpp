@@ -41,6 +41,18 @@ TEST(LocateTime, LiesLinearlyBetweenNeighbours) {
   EXPECT_EQ(locate_time(model, 2, 1.0 + 1e-12 + (8 - 1e-12) * 0.75), (KeyInterval{6, 7, 0.75f}));
 }
 
+TEST(LocateTime, OfAModelThatHoldsAtKeysOnlyIsTheNearestKey) {
+  ModelStorage storage = three_clips();
+  storage.holds_between_keys = false;
+  const ModelView model = storage.view();
+  EXPECT_EQ(locate_time(model, 0, 0.2), at_key(0));
+  EXPECT_EQ(locate_time(model, 0, 0.25), at_key(0)) << "half-way it is the earlier";
+  EXPECT_EQ(locate_time(model, 0, 0.26), at_key(1));
+  EXPECT_EQ(locate_time(model, 0, 1.5), at_key(2));
+  EXPECT_EQ(locate_time(model, 2, 0.625), at_key(4));
+  EXPECT_EQ(locate_time(model, 2, 8), at_key(7));
+}
+
 TEST(LocateTime, ClampsToTheClipAndTakesNanAsItsStart) {
   const ModelStorage storage = three_clips();
   const ModelView model = storage.view();

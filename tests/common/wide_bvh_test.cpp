@@ -46,6 +46,23 @@ TEST_P(WideBvhOfScene, RefitsToItselfWhereNothingMoved) {
   EXPECT_EQ(validate(bvh, GetParam().boxes), "");
 }
 
+TEST_P(WideBvhOfScene, IsSoundAndNoDearerAfterRotations) {
+  std::vector<Aabb> boxes = GetParam().boxes;
+  WideBvh bvh = build_wide_bvh(boxes, 16);
+  test::Random random(62);
+  for (int frame = 0; frame < 20; ++frame) {
+    for (Aabb& box : boxes) {
+      const Vec3f step = random.point({{-1, -1, -1}, {1, 1, 1}});
+      box = {box.lo + step, box.hi + step};
+    }
+    refit_wide_bvh(bvh, boxes);
+    const double before = sah_cost(bvh);
+    rotate_wide_bvh(bvh);
+    ASSERT_EQ(validate(bvh, boxes), "") << "frame " << frame;
+    EXPECT_LE(sah_cost(bvh), before * (1 + 1e-6));
+  }
+}
+
 TEST_P(WideBvhOfScene, TopLevelHasEveryBoxInALeafOfItsOwn) {
   const std::vector<Aabb>& boxes = GetParam().boxes;
   TopLevel top;
@@ -158,6 +175,60 @@ TEST(WideBvhCost, IsThatOfTheFormulaOnAHandMadeTree) {
   bvh.nodes[1].count = 1;
   EXPECT_NEAR(sah_cost(bvh), 1 + (6 + 10 + 10) / 18.0, 1e-12);
   EXPECT_EQ(sah_cost(WideBvh{}), 0);
+}
+
+TEST(WideBvhRotations, BringTogetherWhatHasComeTogether) {
+  // Many small crowds, each about a leaf, that all go somewhere else.
+  constexpr int kCrowds = 256, kInCrowd = 12;
+  test::Random random(63);
+  const Aabb everywhere{{0, 0, 0}, {100, 100, 100}}, nearby{{0, 0, 0}, {1, 1, 1}};
+  std::vector<Aabb> boxes;
+  for (int crowd = 0; crowd < kCrowds; ++crowd) {
+    const Vec3f place = random.point(everywhere);
+    for (int i = 0; i < kInCrowd; ++i)
+      boxes.push_back(test::box_at(place + random.point(nearby), {0.1f, 0.1f, 0.1f}));
+  }
+  WideBvh bvh = build_wide_bvh(boxes, 16);
+  for (int crowd = 0; crowd < kCrowds; ++crowd) {
+    const Vec3f step = random.point(everywhere) - random.point(everywhere);
+    for (int i = 0; i < kInCrowd; ++i) {
+      Aabb& box = boxes[static_cast<std::size_t>(crowd * kInCrowd + i)];
+      box = {box.lo + step, box.hi + step};
+    }
+  }
+  refit_wide_bvh(bvh, boxes);
+  const double worn = sah_cost(bvh);
+  ASSERT_GT(worn, 2 * sah_cost(build_wide_bvh(boxes, 16)));
+  while (rotate_wide_bvh(bvh) > 0) {
+  }
+  EXPECT_EQ(validate(bvh, boxes), "");
+  EXPECT_LT(sah_cost(bvh), 0.7 * worn);
+}
+
+TEST(WideBvhRotations, NeverMakeATreeTooDeep) {
+  // A chain as deep as may be: a node of two leaves, over and over; rotations could only lengthen
+  // it.
+  std::vector<Aabb> boxes;
+  WideBvh bvh;
+  for (std::uint32_t i = 0; i <= kMaxBvhDepth; ++i) {
+    WideBvhNode& node = bvh.nodes.emplace_back();
+    const bool is_last = i == kMaxBvhDepth;
+    node.child[0] = WideBvhChild::leaf(i);
+    node.child[1] = is_last ? WideBvhChild::leaf(i + 1) : WideBvhChild::inner(i + 1);
+    node.count = 2;
+  }
+  test::Random random(64);
+  for (std::uint32_t i = 0; i < kMaxBvhDepth + 2; ++i) {
+    boxes.push_back(test::box_at(random.point({{0, 0, 0}, {10, 10, 10}}), {1, 1, 1}));
+    bvh.items.push_back(i);
+    bvh.items.resize((std::size_t{i} + 1) * kLeafItems, kNoItem);
+  }
+  refit_wide_bvh(bvh, boxes);
+  ASSERT_EQ(validate(bvh, boxes), "");
+  std::size_t turns = 0;
+  for (int pass = 0; pass < 50; ++pass) turns += rotate_wide_bvh(bvh);
+  EXPECT_EQ(validate(bvh, boxes), "");
+  EXPECT_GT(turns, 0u);
 }
 
 TEST(WideBvhCost, GrowsWhenItemsMoveApart) {

@@ -25,7 +25,8 @@ void render(const ModelView& model, std::size_t turn) {
   const Clip& clip = model.clips.front();
   const std::uint32_t next = clip.key_count > 1 ? clip.first_key + 1 : clip.first_key;
   Renderer renderer(model, techniques[turn % techniques.size()].id);
-  renderer.render({.at = KeyInterval{clip.first_key, next, 0.25f},
+  renderer.render({.at = model.holds_between_keys ? KeyInterval{clip.first_key, next, 0.25f}
+                                                  : at_key(clip.first_key),
                    .camera = fit_camera({{0, 0, 0}, {2, 5, 2}}, 1.0),
                    .width = kSide,
                    .height = kSide,

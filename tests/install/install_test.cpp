@@ -109,6 +109,44 @@ TEST_F(Installed, TheProgramInTheDocumentationHitsTheHand) {
   EXPECT_THAT(run.out, HasSubstr("m away"));
 }
 
+TEST_F(Installed, TheCProgramInTheDocumentationNeedsPkgConfigAlone) {
+  if (std::string(MDK_SANITIZE) != "") GTEST_SKIP() << "the example is built without sanitizers";
+  const Outcome build =
+      shell("test -f hand.mdk || mdprep bake " MDK_SOURCE_DIR
+            "/assets/hand.glb -o hand.mdk -q; "
+            "sed -n '/^```c$/,/^```/p' 'second place/share/doc/libmdk-dev/library.md' | "
+            "grep -v '^```' > program.c && "
+            "export PKG_CONFIG_PATH=$(dirname \"$(find \"$PWD/second place\" -name mdk.pc)\") && "
+            "eval cc -std=c99 -Wall -Wextra -Wconversion -Werror program.c -o program "
+            "$(pkg-config --cflags --libs mdk)");
+  ASSERT_EQ(build.status, 0) << build.out << build.err;
+  const Outcome run = shell(
+      "LD_LIBRARY_PATH=$(dirname \"$(find \"$PWD/second place\" -name libmdk.so.0)\") ./program");
+  EXPECT_EQ(run.status, 0) << run.err;
+  int hits = 0;
+  std::istringstream(run.out) >> hits;
+  EXPECT_GT(hits, 10) << run.out;
+}
+
+TEST_F(Installed, TheLidarIsTheSameInCppAndInPython) {
+  if (std::string(MDK_SANITIZE) != "") GTEST_SKIP() << "the example is built without sanitizers";
+  const Outcome build = build_client(*folder_, MDK_SOURCE_DIR "/examples/lidar", "lidar");
+  ASSERT_EQ(build.status, 0) << build.out << build.err;
+  const Outcome run =
+      shell("test -f hand.mdk || mdprep bake " MDK_SOURCE_DIR
+            "/assets/hand.glb -o hand.mdk -q; "
+            "LD_LIBRARY_PATH=$(dirname \"$(find \"$PWD/second place\" -name libmdk.so.0)\") "
+            "lidar/lidar hand.mdk cpp.ply");
+  ASSERT_EQ(run.status, 0) << run.err;
+  if (shell("test -d 'second place/lib/python3/dist-packages/mdk'").status != 0)
+    GTEST_SKIP() << "the Python module was not built";
+  const Outcome python = shell(
+      "PYTHONPATH=\"$PWD/second place/lib/python3/dist-packages\" /usr/bin/python3 " MDK_SOURCE_DIR
+      "/examples/lidar/lidar.py hand.mdk python.ply");
+  ASSERT_EQ(python.status, 0) << python.err;
+  EXPECT_TRUE(folder_->read("cpp.ply") == folder_->read("python.ply"));
+}
+
 TEST_F(Installed, EveryCommandHasAPageThatManTakesAndThatNamesItsOptions) {
   const std::string pages = "'second place/share/man/man1/'";
   EXPECT_THAT(shell("gzip -dc " + pages + "mdprep.1.gz").out, HasSubstr("mdprep\\-batch"));

@@ -7,8 +7,10 @@
 
 #include "common/base/error.h"
 #include "common/base/parallel.h"
+#include "common/trace/renderer.h"
 #include "preprocess/pipeline.h"
 #include "tests/preprocess/moving_meshes.h"
+#include "tests/preprocess/whole_sequence.h"
 
 namespace mdk {
 namespace {
@@ -344,6 +346,72 @@ TEST(Decompose, CostsLittleMoreThanThePapersMethodEvenWhereBoxesAtKeysMislead) {
     const DecomposeResult paper = decompose(wild_motion(seed, 24), options, progress);
     EXPECT_EQ(paper.stats.stop_reason, "percent");
     EXPECT_LT(ours.stats.sah_cost, 1.1 * paper.stats.sah_cost) << "seed " << seed;
+  }
+}
+
+TEST(Decompose, MapsNeverMirrorThoughClustersAreFlat) {
+  for (const std::uint32_t seed : {1u, 2u, 3u, 4u})
+    for (const std::uint32_t clusters : {6u, 24u, 50u}) {
+      DecomposeOptions options;
+      options.clusters = clusters;
+      options.segments = 1;
+      EXPECT_EQ(mirrored_maps(run(wild_motion(seed, 40), options).model), 0u)
+          << clusters << " clusters, seed " << seed;
+    }
+}
+
+DecomposeOptions at_keys_only(std::uint32_t clusters = 4) {
+  DecomposeOptions options;
+  options.clusters = clusters;
+  options.between = BetweenKeys::kIgnore;
+  return options;
+}
+
+TEST(Decompose, BoxesOfKeysOnlyAreThoseOfTheKeysAndTheModelSaysSo) {
+  const PoseSequence sequence = wild_motion(93, 20);
+  DecomposeOptions options = at_keys_only();
+  options.segments = 1;
+  const DecomposeResult keys_only = run(sequence, options);
+  EXPECT_FALSE(keys_only.model.holds_between_keys);
+  EXPECT_FALSE(keys_only.model.view().holds_between_keys);
+  const std::vector<Aabb> boxes = first_fuzzy_boxes(keys_only.model);
+  const std::vector<Aabb> expected = boxes_over_keys_only(keys_only.model);
+  for (std::size_t t = 0; t < boxes.size(); ++t) {
+    EXPECT_TRUE(boxes[t].contains(expected[t].lo) && boxes[t].contains(expected[t].hi)) << t;
+    const Vec3d slack =
+        to_double(boxes[t].hi - boxes[t].lo) - to_double(expected[t].hi - expected[t].lo);
+    EXPECT_LT(std::max({slack.x, slack.y, slack.z}), 1e-3) << "rounded to the grid, no more";
+  }
+  options.between = BetweenKeys::kBound;
+  const DecomposeResult always = run(sequence, options);
+  EXPECT_TRUE(always.model.holds_between_keys);
+  EXPECT_LT(keys_only.stats.sah_cost, always.stats.sah_cost);
+}
+
+TEST(Decompose, AModelOfKeysOnlyIsTracedAtKeysAlone) {
+  const DecomposeResult baked = run(wild_motion(94, 16), at_keys_only());
+  const ModelView model = baked.model.view();
+  Renderer oracle(model, "brute-force"), renderer(model, "brute-force");
+  FrameRequest request{
+      .at = at_key(0), .camera = fit_camera(model.bounds, 1), .width = 64, .height = 64};
+  std::uint64_t hits = 0;
+  for (std::uint32_t key = 0; key < model.key_count(); ++key) {
+    request.at = at_key(key);
+    hits += oracle.trace(request).hits;
+    for (const TechniqueInfo& technique : technique_table()) {
+      if (technique.kind == TechniqueKind::kPeer) continue;
+      renderer.set_technique(technique.id);
+      renderer.trace(request);
+      EXPECT_EQ(count_mismatches(oracle.hits(), renderer.hits()), 0u) << technique.id;
+    }
+  }
+  EXPECT_GT(hits, 300u);
+  request.at = {2, 3, 0.5f};
+  try {
+    renderer.trace(request);
+    ADD_FAILURE() << "a time between keys was traced";
+  } catch (const Error& e) {
+    EXPECT_EQ(e.code(), ErrorCode::kUsage);
   }
 }
 

@@ -148,6 +148,13 @@ std::vector<unsigned char> model_bytes(const ModelStorage& model) {
   return bytes;
 }
 
+std::size_t mirrored_maps(const ModelStorage& model) {
+  std::size_t mirrored = 0;
+  for (const Affine3f& map : model.local_from_world)
+    mirrored += !(to_double(map).determinant() > 0);
+  return mirrored;
+}
+
 std::vector<Aabb> first_fuzzy_boxes(const ModelStorage& model) {
   std::vector<Aabb> boxes;
   for (std::size_t c = 0; c < model.clusters.size(); ++c)

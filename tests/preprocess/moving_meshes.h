@@ -46,6 +46,9 @@ PoseSequence wild_motion(std::uint32_t seed, std::uint32_t keys);
 /// Every byte of the model that a file would hold, for comparing two models.
 std::vector<unsigned char> model_bytes(const ModelStorage& model);
 
+/// How many maps of a model turn inside out, or are flat.
+std::size_t mirrored_maps(const ModelStorage& model);
+
 /// Fuzzy boxes of a model's first segment, in triangle order.
 std::vector<Aabb> first_fuzzy_boxes(const ModelStorage& model);
 

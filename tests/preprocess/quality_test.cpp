@@ -81,6 +81,7 @@ TEST_P(RealMotion, EightyClustersLeaveHalfTheAreaOfAPlainImplementationOrLess) {
   const std::string name = GetParam().name;
   const double share = name == "horse_gallop" ? 0.75 : name == "elephant_gallop" ? 0.55 : 0.5;
   EXPECT_LE(area, share * GetParam().area_at_keys);
+  EXPECT_EQ(mirrored_maps(result.model), 0u) << "refinement turned maps inside out";
 }
 
 INSTANTIATE_TEST_SUITE_P(Decompose, RealMotion,

@@ -5,15 +5,9 @@
 #include <limits>
 
 #include "mdk/geometry.h"
+#include "mdk/model.h"
 
 namespace mdk {
-
-/// What becomes of a clip time outside of the clip, which lasts D seconds.
-enum class ClipWrap : std::uint32_t {
-  kLoop = 0,      ///< begins again every D seconds
-  kOnce = 1,      ///< stands at the clip's first or last key
-  kPingPong = 2,  ///< runs forwards, then backwards: 2 D seconds a round
-};
 
 /// What becomes of a path before its first key and after its last one.
 enum class PathEnds : std::uint32_t {

@@ -305,12 +305,12 @@ class PixelLine {
           hit_.t = nearest_ + reach_;
           const rays::MappedRay mapped = map_into(c);
           const RayTree& tree = trees[c];
-          const rays::BoxRay local(
-              mapped.origin, mapped.direction,
-              mapped.stretch * slack +
-                  (abs(mapped.origin) + FourFloats::load(tree.size)) * rounding,
-              0);
-          rays::RayInTree in_tree(local, RayAim::kClosest, hit_);
+          rays::BoxRay local(mapped.origin, mapped.direction,
+                             mapped.stretch * slack +
+                                 (abs(mapped.origin) + FourFloats::load(tree.size)) * rounding,
+                             0);
+          if (HWY_UNLIKELY(mapped.is_extreme)) local.enter_all();
+          rays::RayInTree in_tree(local, tree.nodes.data(), tree.blocks, RayAim::kClosest, hit_);
           walk_bvh(tree.nodes, in_tree, [&](std::uint32_t number) {
             const RayBlock* block = tree.blocks + number;
             test(*block);

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "common/simd/four-inl.h"
 #include "common/trace/kernels/ray_kernels.h"
@@ -18,15 +19,18 @@ namespace mdk {
 namespace HWY_NAMESPACE {
 namespace rays {
 
-/// A component so small moves the ray by less than any slack on its way to anything; kept from
-/// zero, its inverse is finite and no product is without a value.
-constexpr float kShortest = 1e-30f;
+/// A component so small moves the ray by less than any slack on its way to anything; kept from zero,
+/// its inverse is finite.
+constexpr float kShortest = 1e-20f;
+/// Past this, products might overflow.
+constexpr float kLargestReach = 0x1p59f, kLeastStretch = 1e-12f;
 
-/// A ray against boxes of one basis: per axis where the plane that it meets first is seen from, and
-/// the last, each plane being moved outward by a slack.
+/// A ray against boxes of one basis. It meets a plane at t = plane * inverse + near or + far; each
+/// box being moved outward by a slack, there are two of them. Rounding -origin * inverse moves a
+/// plane by 2^-24 of the origin's size, which the slack allows for.
 struct BoxRay {
   alignas(16) float near[4], far[4], inverse[4];
-  std::uint32_t near_row[3];  ///< in rows of planes: low x, high x, low y...
+  std::uint32_t near_row[3];  ///< in rows of planes, low x, high x, low y...: what is met first
   float t_begin;              ///< what ends before it is not entered
 
   HWY_INLINE BoxRay(const FourFloats& origin, const FourFloats& direction, const FourFloats& slack,
@@ -35,7 +39,8 @@ struct BoxRay {
     const FourFloats one = FourFloats::all(1);
     const FourFloats inverted =
         one / with_sign(max(abs(direction), FourFloats::all(kShortest)), direction);
-    const FourFloats for_low = origin + slack, for_high = origin - slack;
+    const FourFloats for_low = FourFloats::all(0) - (origin + slack) * inverted,
+                     for_high = FourFloats::all(0) - (origin - slack) * inverted;
     if_negative(inverted, for_high, for_low).store(near);
     if_negative(inverted, for_low, for_high).store(far);
     inverted.store(inverse);
@@ -43,12 +48,22 @@ struct BoxRay {
     for (std::uint32_t k = 0; k < 3; ++k) near_row[k] = 2 * k + (falls >> k & 1u);
   }
 
+  /// Enters every box.
+  void enter_all() {
+    constexpr float kInfinity = std::numeric_limits<float>::infinity();
+    for (std::size_t k = 0; k < 4; ++k) {
+      inverse[k] = 0;
+      near[k] = -kInfinity;
+      far[k] = kInfinity;
+    }
+  }
+
   /// One box, whether it is entered before t_max.
   HWY_INLINE bool enters(const FourFloats& lo, const FourFloats& hi, float t_max) const {
     const FourFloats inverted = FourFloats::load(inverse);
     alignas(16) float enter[4], leave[4];
-    ((if_negative(inverted, hi, lo) - FourFloats::load(near)) * inverted).store(enter);
-    ((if_negative(inverted, lo, hi) - FourFloats::load(far)) * inverted).store(leave);
+    (if_negative(inverted, hi, lo) * inverted + FourFloats::load(near)).store(enter);
+    (if_negative(inverted, lo, hi) * inverted + FourFloats::load(far)).store(leave);
     return std::max({t_begin, enter[0], enter[1], enter[2]}) <=
            std::min({t_max, leave[0], leave[1], leave[2]});
   }
@@ -72,8 +87,8 @@ class LaneRay {
   HWY_INLINE std::uint32_t enter(D d, float t_max, float* order, const Row& row) const {
     auto near = t_begin_, far = hn::Set(d, t_max);
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      near = hn::Max(near, hn::Mul(hn::Sub(row(near_row_[axis]), near_[axis]), inverse_[axis]));
-      far = hn::Min(far, hn::Mul(hn::Sub(row(near_row_[axis] ^ 1u), far_[axis]), inverse_[axis]));
+      near = hn::Max(near, hn::MulAdd(row(near_row_[axis]), inverse_[axis], near_[axis]));
+      far = hn::Min(far, hn::MulAdd(row(near_row_[axis] ^ 1u), inverse_[axis], far_[axis]));
     }
     hn::Store(near, d, order);
     return mask_bits(d, hn::Le(near, far));
@@ -87,24 +102,34 @@ class LaneRay {
 /// A ray on its way down one cluster's tree (walk-inl.h).
 class RayInTree {
  public:
-  HWY_INLINE RayInTree(const BoxRay& ray, RayAim aim, const RayHit& hit)
-      : ray_(Tag(), ray), aim_(aim), hit_(hit) {}
+  HWY_INLINE RayInTree(const BoxRay& ray, const RayNode* nodes, const RayBlock* blocks,
+                       RayAim aim, const RayHit& hit)
+      : ray_(Tag(), ray), nodes_(nodes), blocks_(blocks), aim_(aim), hit_(hit) {}
 
-  HWY_INLINE std::uint32_t enter(const WideBvhNode& node, float (&order)[kBvhWidth]) const {
+  HWY_INLINE std::uint32_t enter(const RayNode& node, float (&order)[kRayWidth]) const {
     const Tag d;
     std::uint32_t entered = 0;
-    for (std::size_t first = 0; first < kBvhWidth; first += hn::Lanes(d))
-      entered |= ray_.enter(d, hit_.t, order + first, [&](std::uint32_t row) {
-        return hn::Load(d, node.bounds[row] + first);
-      }) << first;
+    for (std::size_t first = 0; first < kRayWidth; first += hn::Lanes(d))
+      entered |= ray_.enter(d, hit_.t, order + first,
+                            [&](std::uint32_t row) {
+                              return hn::Load(d, node.bounds[row] + first);
+                            })
+                 << first;
     return entered & ((1u << node.count) - 1);
+  }
+  HWY_INLINE void expect(WideBvhChild child) const {
+    const char* at = child.is_leaf() ? reinterpret_cast<const char*>(blocks_ + child.index())
+                                     : reinterpret_cast<const char*>(nodes_ + child.index());
+    for (int line = 0; line < (child.is_leaf() ? 3 : 7); ++line) hwy::Prefetch(at + 64 * line);
   }
   bool is_past(float order) const { return order > hit_.t; }
   bool finished() const { return aim_ == RayAim::kAny && hit_.triangle != kNoHit; }
 
  private:
-  using Tag = hn::CappedTag<float, kBvhWidth>;
+  using Tag = hn::CappedTag<float, kRayWidth>;
   LaneRay<Tag> ray_;
+  const RayNode* nodes_;
+  const RayBlock* blocks_;
   RayAim aim_;
   const RayHit& hit_;
 };
@@ -113,6 +138,7 @@ class RayInTree {
 struct MappedRay {
   FourFloats origin, direction;
   FourFloats stretch;  ///< what the inverse makes of a box of half side 1, along each axis
+  bool is_extreme = false;  ///< maps to numbers that boxes in float are not proven for
 };
 
 /// With rows X, Y, Z of the map's linear part, its inverse has the columns Y x Z, Z x X and X x Y,
@@ -140,7 +166,7 @@ HWY_INLINE MappedRay map_ray(const KeyMap& from, const KeyMap& to, float s, cons
 
 /// The same for a map that is not regular (AffinePath).
 inline MappedRay map_irregular(const Affine3d& local_from_world, const Vec3d& direction,
-                               const Vec3d& origin) {
+                        const Vec3d& origin) {
   const Vec3d o = local_from_world.point(origin), d = local_from_world.vector(direction);
   float stretch[4] = {};
   for (std::size_t k = 0; k < 3; ++k) {
@@ -149,7 +175,9 @@ inline MappedRay map_irregular(const Affine3d& local_from_world, const Vec3d& di
   }
   return {to_float(FourDoubles::load(std::array{o.x, o.y, o.z, 0.0}.data())),
           to_float(FourDoubles::load(std::array{d.x, d.y, d.z, 0.0}.data())),
-          FourFloats::load(stretch)};
+          FourFloats::load(stretch),
+          !(std::min({stretch[0], stretch[1], stretch[2]}) > kLeastStretch &&
+            std::max({stretch[0], stretch[1], stretch[2]}) < 1 / kLeastStretch)};
 }
 
 }  // namespace rays

@@ -3,10 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "common/trace/kernels/ray_kernels.cpp"
 #include <hwy/foreach_target.h>
+#include <hwy/cache_control.h>
 #include <hwy/highway.h>
 // after highway.h
 #include "common/trace/kernels/ray_boxes-inl.h"
@@ -31,15 +33,20 @@ HWY_INLINE void test_leaf(RayAndBlocks& ray, const RayBlock* block, const Vertic
   while (block->has_next) ray.test(*++block, vertices);
 }
 
-/// Vertices between two keys, which are decoded when the first block asks for one.
+/// Vertices between two keys, which are decoded when the first block asks for one, and held until
+/// the ray is done.
 class KeyVertices {
  public:
   KeyVertices(const KeyPoses& poses, const KeyInterval& at) : poses_(poses), at_(at) {}
+  ~KeyVertices() {
+    if (source_.from != nullptr) poses_.release(at_);
+  }
+  KeyVertices(const KeyVertices&) = delete;
+  KeyVertices& operator=(const KeyVertices&) = delete;
 
   template <class D>
   HWY_INLINE Points<D> points(D d, const RayBlock& block, std::size_t first) const {
-    if (HWY_UNLIKELY(source_.from == nullptr))
-      source_ = {poses_.key(at_.key0), poses_.key(at_.key1), at_.s};
+    if (HWY_UNLIKELY(source_.from == nullptr)) source_ = poses_.acquire(at_);
     return pose(d, block.vertex + first, source_);
   }
   HWY_INLINE Vec3f position(const RayBlock& block, std::size_t place) const {
@@ -72,11 +79,12 @@ class RayInModel {
     const FourFloats lo = side(from.lo, to.lo), hi = side(from.hi, to.hi);
     // No box of this time reaches farther.
     const FourFloats size = abs(ray_.origin()) + max(abs(lo), abs(hi));
-    const BoxRay world(ray_.origin(), ray_.direction(),
-                       FourFloats::all(ray_.slack()) + size * FourFloats::all(0x1p-19f),
-                       std::min(0.0f, ray_.ray().t_min));
+    BoxRay world(ray_.origin(), ray_.direction(),
+                 FourFloats::all(ray_.slack()) + size * FourFloats::all(0x1p-19f),
+                 std::min(0.0f, ray_.ray().t_min));
+    ray_.prepare(world.inverse);
+    if (HWY_UNLIKELY(ray_.is_vast())) world.enter_all();
     if (!world.enters(lo, hi, ray_.hit().t)) return;
-    ray_.prepare();
     walk_top(world);
   }
 
@@ -131,11 +139,12 @@ class RayInModel {
     const RayTree& tree = trees_[c];
     const MappedRay mapped = map_into(c);
     const FourFloats size = FourFloats::load(tree.size);
-    const BoxRay local(mapped.origin, mapped.direction,
+    BoxRay local(mapped.origin, mapped.direction,
                        mapped.stretch * FourFloats::all(ray_.slack()) +
                            (abs(mapped.origin) + size) * FourFloats::all(0x1p-19f),
                        std::min(0.0f, ray_.ray().t_min));
-    RayInTree ray(local, ray_.aim(), ray_.hit());
+    if (HWY_UNLIKELY(mapped.is_extreme || ray_.is_vast())) local.enter_all();
+    RayInTree ray(local, tree.nodes.data(), tree.blocks, ray_.aim(), ray_.hit());
     walk_bvh(tree.nodes, ray, [&](std::uint32_t block) {
       test_leaf(ray_, tree.blocks + block, vertices_);
     });
@@ -198,6 +207,59 @@ QueryHit TraceRay(const RayModel& model, const QueryRay& ray, const KeyInterval&
   return scaled.in_callers_lengths(hit);
 }
 
+/// A bit for each of as many rays as a vector holds that may enter the model's bounds, its slack
+/// included: what is told for certain, of rays of ordinary lengths.
+HWY_INLINE std::uint32_t may_enter(const RayModel& model, const QueryRay* rays, std::size_t count) {
+  const FloatTag d;
+  alignas(64) float part[8][hn::MaxLanes(FloatTag())] = {};
+  static_assert(sizeof(QueryRay) == 8 * sizeof(float));
+  for (std::size_t i = 0; i < count; ++i) {
+    float numbers[8];
+    std::memcpy(numbers, &rays[i], sizeof numbers);
+    for (std::size_t k = 0; k < 8; ++k) part[k][i] = numbers[k];
+  }
+  const Points<FloatTag> o{hn::Load(d, part[0]), hn::Load(d, part[1]), hn::Load(d, part[2])},
+      v{hn::Load(d, part[3]), hn::Load(d, part[4]), hn::Load(d, part[5])};
+  const Points<FloatTag> away = broadcast(d, model.center) - o;
+  const auto reach = hn::Add(sum_of_sizes(away), hn::Set(d, model.diagonal));
+  const auto longest = hn::Max(hn::Abs(v.x), hn::Max(hn::Abs(v.y), hn::Abs(v.z)));
+  const auto shortest = hn::Mul(longest, hn::Set(d, 0x1p-40f));
+  auto near = hn::Min(hn::Zero(d), hn::Load(d, part[6])), far = hn::Load(d, part[7]);
+  const auto cut = [&](hn::Vec<FloatTag> origin, hn::Vec<FloatTag> direction, float lo, float hi) {
+    const float side = std::max(std::abs(lo), std::abs(hi));
+    const auto slack = hn::Mul(hn::Add(reach, hn::Add(hn::Abs(origin), hn::Set(d, side))),
+                               hn::Set(d, 0x1p-18f));
+    const auto inverse = hn::Div(
+        hn::Set(d, 1.0f), hn::CopySign(hn::Max(hn::Abs(direction), shortest), direction));
+    const auto a = hn::Mul(hn::Sub(hn::Sub(hn::Set(d, lo), slack), origin), inverse);
+    const auto b = hn::Mul(hn::Sub(hn::Add(hn::Set(d, hi), slack), origin), inverse);
+    near = hn::Max(near, hn::Min(a, b));
+    far = hn::Min(far, hn::Max(a, b));
+  };
+  cut(o.x, v.x, model.bounds.lo.x, model.bounds.hi.x);
+  cut(o.y, v.y, model.bounds.lo.y, model.bounds.hi.y);
+  cut(o.z, v.z, model.bounds.lo.z, model.bounds.hi.z);
+  const auto ordinary = hn::And(
+      hn::Lt(reach, hn::Set(d, kLargestReach)),
+      hn::And(hn::Gt(longest, hn::Set(d, 0x1p-40f)), hn::Lt(longest, hn::Set(d, 0x1p40f))));
+  const std::uint32_t missed = mask_bits(d, hn::And(ordinary, hn::Gt(near, far)));
+  return ~missed & ((1u << count) - 1);
+}
+
+void TraceRays(const RayModel& model, const QueryRay* rays, const KeyInterval* times,
+               const std::uint32_t* segments, RayAim aim, QueryHit* hits, std::size_t count) {
+  const std::size_t lanes = hn::Lanes(FloatTag());
+  for (std::size_t first = 0; first < count; first += lanes) {
+    const std::size_t some = std::min(lanes, count - first);
+    const std::uint32_t entering = may_enter(model, rays + first, some);
+    for (std::size_t i = 0; i < some; ++i)
+      hits[first + i] = (entering >> i & 1u) != 0 ? TraceRay(model, rays[first + i],
+                                                             times[first + i],
+                                                             segments[first + i], aim)
+                                                  : QueryHit{};
+  }
+}
+
 QueryHit TracePosed(const PosedScene& scene, const QueryRay& ray, RayAim aim) {
   const ScaledRay scaled(ray);
   if (!scaled.usable) return {};
@@ -205,13 +267,14 @@ QueryHit TracePosed(const PosedScene& scene, const QueryRay& ray, RayAim aim) {
   RayAndBlocks traced(scaled, scene.center, scene.diagonal, aim, hit);
   const FourFloats lo = FourFloats::load(scene.bounds.lo), hi = FourFloats::load(scene.bounds.hi);
   const FourFloats size = abs(traced.origin()) + max(abs(lo), abs(hi));
-  const BoxRay world(traced.origin(), traced.direction(),
-                     FourFloats::all(traced.slack()) + size * FourFloats::all(0x1p-19f),
-                     std::min(0.0f, scaled.ray.t_min));
+  BoxRay world(traced.origin(), traced.direction(),
+               FourFloats::all(traced.slack()) + size * FourFloats::all(0x1p-19f),
+               std::min(0.0f, scaled.ray.t_min));
+  traced.prepare(world.inverse);
+  if (HWY_UNLIKELY(traced.is_vast())) world.enter_all();
   if (world.enters(lo, hi, hit.t)) {
-    traced.prepare();
     const PosedVertices vertices(scene);
-    RayInTree in_tree(world, aim, hit);
+    RayInTree in_tree(world, scene.nodes.data(), scene.blocks, aim, hit);
     walk_bvh(scene.nodes, in_tree,
              [&](std::uint32_t block) { test_leaf(traced, scene.blocks + block, vertices); });
   }
@@ -254,7 +317,7 @@ void TestBlocks(const WorldRay& ray, std::span<const TriangleBlock> blocks,
 }
 
 }  // namespace rays
-using rays::PoseBlocks, rays::TestBlocks, rays::TracePosed, rays::TraceRay;
+using rays::PoseBlocks, rays::TestBlocks, rays::TracePosed, rays::TraceRay, rays::TraceRays;
 }  // namespace HWY_NAMESPACE
 }  // namespace mdk
 HWY_AFTER_NAMESPACE();
@@ -266,10 +329,16 @@ HWY_EXPORT(PoseBlocks);
 HWY_EXPORT(TestBlocks);
 HWY_EXPORT(TracePosed);
 HWY_EXPORT(TraceRay);
+HWY_EXPORT(TraceRays);
 
 QueryHit trace_ray(const RayModel& model, const QueryRay& ray, const KeyInterval& at,
                    std::uint32_t segment, RayAim aim) {
   return HWY_DYNAMIC_DISPATCH(TraceRay)(model, ray, at, segment, aim);
+}
+
+void trace_rays(const RayModel& model, const QueryRay* rays, const KeyInterval* times,
+                const std::uint32_t* segments, RayAim aim, QueryHit* hits, std::size_t count) {
+  HWY_DYNAMIC_DISPATCH(TraceRays)(model, rays, times, segments, aim, hits, count);
 }
 
 QueryHit trace_posed(const PosedScene& scene, const QueryRay& ray, RayAim aim) {

@@ -59,9 +59,13 @@ struct alignas(64) RayBlock {
 };
 static_assert(sizeof(RayBlock) == 192);
 
+/// Of hierarchies for single rays, which test a node's sixteen boxes at once.
+inline constexpr std::uint32_t kRayWidth = 16;
+using RayNode = WideNode<kRayWidth>;
+
 /// The hierarchy of one cluster; the links of its leaves are numbers of blocks.
 struct RayTree {
-  std::span<const WideBvhNode> nodes;
+  std::span<const RayNode> nodes;
   const RayBlock* blocks;
   float size[4];  ///< the largest |x|, |y|, |z| of all boxes, in the cluster's basis
 };
@@ -92,7 +96,8 @@ struct alignas(32) KeyBox {
 
 /// All that rays go through. F keys, K clusters, S segments, N nodes over clusters.
 struct RayModel {
-  Vec3f center;    ///< of the model's bounds
+  Aabb bounds;     ///< hold it at all times
+  Vec3f center;    ///< of the bounds
   float diagonal;  ///< theirs
   std::uint32_t clusters, top_nodes, top_roots;
   const KeyBox* key_boxes;           ///< F
@@ -110,6 +115,10 @@ struct RayModel {
 QueryHit trace_ray(const RayModel& model, const QueryRay& ray, const KeyInterval& at,
                    std::uint32_t segment, RayAim aim);
 
+/// The same for many, each at a time of its own.
+void trace_rays(const RayModel& model, const QueryRay* rays, const KeyInterval* times,
+                const std::uint32_t* segments, RayAim aim, QueryHit* hits, std::size_t count);
+
 /// Where the vertices of a block are at one time.
 struct alignas(64) PosedRayBlock {
   float x[kBlockVertices], y[kBlockVertices], z[kBlockVertices];
@@ -124,7 +133,7 @@ struct PosedScene {
   Vec3f center;    ///< of its bounds
   float diagonal;  ///< theirs
   KeyBox bounds;
-  std::span<const WideBvhNode> nodes;
+  std::span<const RayNode> nodes;
   const RayBlock* blocks;
   const PosedRayBlock* posed;
 };

@@ -18,7 +18,7 @@
 // moves a weight by 1.42 * 2^-18 g m; rounding the corners to 6 * 2^-24 g moves it by 1.5 * 2^-20 g m,
 // and the products round by 2^-21 g m: in all less than R m + R^2, R = 1.25 * 2^-17 g. So there is no
 // hit where one weight is past R m + R^2 and another below its negative; nor where all corners lie
-// beyond the hit so far, or before t_min, by more than R.
+// beyond the hit so far by more than R.
 #include <algorithm>
 #include <cmath>
 
@@ -240,36 +240,43 @@ class RayAndBlocks {
  public:
   /// `center`, `diagonal`: of a box around all that may be met.
   RayAndBlocks(const ScaledRay& ray, const Vec3f& center, float diagonal, RayAim aim, RayHit& hit)
-      : ray_(ray.ray), aim_(aim), hit_(hit), tester_(ray.ray, hit) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      origin_[k] = static_cast<float>(ray_.origin[k]);
-      direction_[k] = static_cast<float>(ray_.direction[k]);
-    }
-    reach_ = std::abs(center.x - origin_[0]) + std::abs(center.y - origin_[1]) +
-             std::abs(center.z - origin_[2]) + diagonal;
-  }
+      : ray_(ray.ray),
+        query_(ray.query),
+        aim_(aim),
+        hit_(hit),
+        tester_(ray.ray, hit),
+        // Four numbers at once: the last ones are of the members behind, and have no meaning.
+        origin_(FourFloats::load(&ray.query.origin.x)),
+        direction_(to_float(to_double(FourFloats::load(&ray.query.direction.x)) *
+                            FourDoubles::all(ray.direction_scale()))),
+        reach_(std::abs(center.x - query_.origin.x) + std::abs(center.y - query_.origin.y) +
+               std::abs(center.z - query_.origin.z) + diagonal) {}
 
   bool finished() const { return aim_ == RayAim::kAny && hit_.triangle != kNoHit; }
   RayAim aim() const { return aim_; }
   const RayHit& hit() const { return hit_; }
   const WorldRay& ray() const { return ray_; }
-  FourFloats origin() const { return FourFloats::load(origin_); }
-  FourFloats direction() const { return FourFloats::load(direction_); }
+  const FourFloats& origin() const { return origin_; }
+  const FourFloats& direction() const { return direction_; }
   /// What boxes in the world must give way by, for the test's sake.
   float slack() const { return reach_ * (1.25f * 0x1p-19f); }
 
-  /// Before the first test().
-  void prepare() {
-    std::size_t along = 0;
-    for (std::size_t k = 1; k < 3; ++k)
-      if (std::abs(direction_[k]) > std::abs(direction_[along])) along = k;
-    const std::size_t x = (along + 1) % 3, y = (along + 2) % 3;
-    const float inverse = 1 / direction_[along];
+  /// Too far away, or too large, for boxes in float.
+  bool is_vast() const { return !(reach_ < 0x1p59f); }
+
+  /// Before the first test(). `inverse`: of the direction, in float.
+  HWY_INLINE void prepare(const float (&inverse_of)[4]) {
+    const Vec3f& d = query_.direction;
+    const std::size_t along = std::abs(d.x) >= std::abs(d.y) && std::abs(d.x) >= std::abs(d.z) ? 0
+                              : std::abs(d.y) >= std::abs(d.z)                                 ? 1
+                                                                                               : 2;
+    const std::size_t x = along == 2 ? 0 : along + 1, y = along == 0 ? 2 : along - 1;
+    const float inverse = inverse_of[along];
     for (auto& row : image_) row[0] = row[1] = row[2] = 0;
     image_[0][x] = 1;
-    image_[0][along] = -direction_[x] * inverse;
+    image_[0][along] = static_cast<float>(-ray_.direction[x]) * inverse;
     image_[1][y] = 1;
-    image_[1][along] = -direction_[y] * inverse;
+    image_[1][along] = static_cast<float>(-ray_.direction[y]) * inverse;
     image_[2][along] = inverse;
     // Out of this range, products in float might be lost: nothing is rejected then.
     tolerance_ = reach_ > 0x1p-40f && reach_ < 0x1p60f ? reach_ * (1.25f * 0x1p-17f)
@@ -287,9 +294,9 @@ class RayAndBlocks {
     };
     for (std::size_t part = 0; part < Sixteen::kParts; ++part) {
       const Points<FloatTag> posed = vertices.points(d, block, part * hn::Lanes(d));
-      const Points<FloatTag> p{hn::Sub(posed.x, hn::Set(d, origin_[0])),
-                               hn::Sub(posed.y, hn::Set(d, origin_[1])),
-                               hn::Sub(posed.z, hn::Set(d, origin_[2]))};
+      const Points<FloatTag> p{hn::Sub(posed.x, hn::Set(d, query_.origin.x)),
+                               hn::Sub(posed.y, hn::Set(d, query_.origin.y)),
+                               hn::Sub(posed.z, hn::Set(d, query_.origin.z))};
       const auto across = row_of(image_[0], p), down = row_of(image_[1], p);
       x.set(part, across);
       y.set(part, down);
@@ -315,9 +322,7 @@ class RayAndBlocks {
                                    hn::Lt(hn::Min(wa, hn::Min(wb, wc)), hn::Neg(error)));
       const auto az = z.pick(a), bz = z.pick(b), cz = z.pick(c);
       const auto beyond = hn::Gt(hn::Min(az, hn::Min(bz, cz)), hn::Set(d, hit_.t + tolerance_));
-      const auto before =
-          hn::Lt(hn::Max(az, hn::Max(bz, cz)), hn::Set(d, ray_.t_min - tolerance_));
-      const auto rejected = hn::Or(outside, hn::Or(beyond, before));
+      const auto rejected = hn::Or(outside, beyond);
       passed |= (mask_bits(d, rejected) ^ ((1u << hn::Lanes(d)) - 1)) << first;
     }
     passed &= (1u << block.count) - 1;
@@ -332,11 +337,12 @@ class RayAndBlocks {
 
  private:
   const WorldRay& ray_;
+  const QueryRay& query_;
   const RayAim aim_;
   RayHit& hit_;
   RayTester tester_;
-  alignas(16) float origin_[4] = {}, direction_[4] = {0, 0, 0, 1};
-  float reach_;                    ///< no less than any distance to what may be met
+  const FourFloats origin_, direction_;
+  const float reach_;              ///< no less than any distance to what may be met
   float image_[3][3], tolerance_;  ///< rows of the map into the image, and R
 };
 

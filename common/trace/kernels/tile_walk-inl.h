@@ -91,7 +91,8 @@ class TileInTree {
   }
 
   /// Not those outside, nor those farther than all hits; `depth` gets each child's least depth.
-  HWY_INLINE std::uint32_t enter(const WideBvhNode& node, float (&depth)[kBvhWidth]) const {
+  template <std::uint32_t kWidth>
+  HWY_INLINE std::uint32_t enter(const WideNode<kWidth>& node, float (&depth)[kWidth]) const {
     tester_.counter().nodes(node.count);
     return enter(node.bounds, depth) & ((1u << node.count) - 1);
   }

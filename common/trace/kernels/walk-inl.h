@@ -4,6 +4,7 @@
 //
 //     rays.enter(node, order)   the children that may be hit, a bit each, and for each a number
 //                               that grows with where its box begins
+//     rays.expect(child)        may fetch what a child that is entered needs; need not be there
 //     rays.is_past(order)       nothing that begins there matters any more
 //     rays.misses(cell)         certainly; a Cell is a node of a kd-tree and its box
 //     rays.set_axis(cell, axis, lo, hi)
@@ -34,18 +35,19 @@ struct WaitingChild {
 };
 
 /// Calls leaf(number) for the leaves entered, near ones first.
-template <class Rays, class Leaf>
-HWY_INLINE void walk_bvh(std::span<const WideBvhNode> nodes, Rays& rays, const Leaf& leaf) {
+template <std::uint32_t kWidth, class Rays, class Leaf>
+HWY_INLINE void walk_bvh(std::span<const WideNode<kWidth>> nodes, Rays& rays, const Leaf& leaf) {
   if (nodes.empty()) return;
   // Every level leaves all but one child on the stack.
-  WaitingChild stack[std::size_t{kMaxBvhDepth + 1} * kBvhWidth];
+  WaitingChild stack[std::size_t{kMaxBvhDepth + 1} * kWidth];
   std::size_t size = 0;
-  const auto open = [&](const WideBvhNode& node) {
-    alignas(64) float order[kBvhWidth];
+  const auto open = [&](const WideNode<kWidth>& node) {
+    alignas(64) float order[kWidth];
     const std::size_t bottom = size;
     for (std::uint32_t entered = rays.enter(node, order); entered != 0; entered &= entered - 1) {
       const auto c = static_cast<std::size_t>(__builtin_ctz(entered));
       const WaitingChild child{order[c], node.child[c]};
+      if constexpr (requires { rays.expect(child.child); }) rays.expect(child.child);
       std::size_t at = size++;  // the nearest comes on top
       for (; at > bottom && stack[at - 1].order < child.order; --at) stack[at] = stack[at - 1];
       stack[at] = child;

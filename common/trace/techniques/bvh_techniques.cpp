@@ -139,6 +139,36 @@ class HybridBvhTechnique final : public BvhTechnique {
   double lost_frames_ = 0;  ///< since then, in frames of tracing
 };
 
+/// Refitted, and mended by tree rotations (Kensler 2008) where motion has made it expensive: what
+/// the hybrid does by building anew. A pass costs about as much as a frame of tracing loses when it
+/// is due; once passes find nothing more, the tree is the best that rotations reach.
+class RotateBvhTechnique final : public BvhTechnique {
+ public:
+  using BvhTechnique::BvhTechnique;
+
+  void prebuild(const PosedMesh&) override {
+    if (!bvh_.nodes.empty()) return;
+    set_tree(build_over_rest_pose());
+    best_cost_ = sah_cost(bvh_);
+  }
+
+ private:
+  static constexpr double kRotationFrames = 0.1;  ///< what a pass costs, in frames of tracing
+
+  void follow() override {
+    refit_wide_bvh(bvh_, boxes_);
+    if (best_cost_ <= 0) return;
+    lost_frames_ += std::max(0.0, sah_cost(bvh_) / best_cost_ - 1);
+    if (lost_frames_ < kRotationFrames) return;
+    rotate_wide_bvh(bvh_);
+    assert(validate(bvh_, boxes_).empty());
+    lost_frames_ = 0;
+  }
+
+  double best_cost_ = 0;    ///< of the hierarchy of the rest pose
+  double lost_frames_ = 0;  ///< since the last pass, in frames of tracing
+};
+
 }  // namespace
 
 std::unique_ptr<Technique> make_rebuild_bvh(const ModelView& model) {
@@ -149,6 +179,9 @@ std::unique_ptr<Technique> make_refit_bvh(const ModelView& model) {
 }
 std::unique_ptr<Technique> make_tsah_refit(const ModelView& model) {
   return std::make_unique<TsahRefitTechnique>(model);
+}
+std::unique_ptr<Technique> make_rotate_bvh(const ModelView& model) {
+  return std::make_unique<RotateBvhTechnique>(model);
 }
 std::unique_ptr<Technique> make_hybrid_bvh(const ModelView& model) {
   return std::make_unique<HybridBvhTechnique>(model);

@@ -79,6 +79,7 @@ std::unique_ptr<Technique> make_fuzzy_kdtree(const ModelView& model);
 std::unique_ptr<Technique> make_hybrid_bvh(const ModelView& model);
 std::unique_ptr<Technique> make_rebuild_bvh(const ModelView& model);
 std::unique_ptr<Technique> make_refit_bvh(const ModelView& model);
+std::unique_ptr<Technique> make_rotate_bvh(const ModelView& model);
 std::unique_ptr<Technique> make_static_kdtree(const ModelView& model);
 std::unique_ptr<Technique> make_tsah_refit(const ModelView& model);
 

@@ -1,6 +1,7 @@
 // Bones as clusters (GFSS06; Lo09 §4.3): a cluster's basis is a bone's, A_c(t) = bone⁻¹(t), and a
-// triangle goes to the bone in whose basis its fuzzy box is smallest: all bones that move one of
-// its corners are tried. Parts that move rigidly are bones, too (common/motion/rig.h).
+// triangle goes to the bone in whose basis its fuzzy box is smallest. Over clips all bones are
+// tried, most of them ruled out by their boxes over a few keys; over a pose space those that move
+// one of its corners. Parts that move rigidly are bones, too (common/motion/rig.h).
 #include <algorithm>
 #include <cstddef>
 #include <limits>
@@ -8,6 +9,7 @@
 
 #include "common/base/parallel.h"
 #include "preprocess/boxes/cost.h"
+#include "preprocess/cluster/boxes/box_clusters.h"
 #include "preprocess/cluster/clusters.h"
 #include "preprocess/cluster/common_moves.h"
 #include "preprocess/maps/key_maps.h"
@@ -37,7 +39,7 @@ struct Candidates {
   const PoseSequence& sequence;
   std::span<const std::uint32_t> keys;
   std::span<const double> model_areas;  ///< beside `keys`
-  const PoseSpace* space;
+  const PoseSpace& space;
 };
 
 /// Boxes of the vertices in the bone's base space.
@@ -50,8 +52,7 @@ std::vector<Aabbd> vertex_boxes(const Candidates& c, std::uint32_t bone,
     for (std::size_t i = 0; i < vertices.size(); ++i)
       boxes[i].extend(maps[k].point(to_double(pose[vertices[i]])));
   }
-  if (c.space == nullptr) return boxes;
-  BoneSpace space(*c.space, bone);
+  BoneSpace space(c.space, bone);
   if (!space.is_usable()) return {};
   for (std::size_t i = 0; i < vertices.size(); ++i)
     boxes[i].extend(space.vertex_box(vertices[i], {}));
@@ -79,15 +80,19 @@ void judge(const Candidates& c, std::uint32_t bone, Offer& offer) {
   }
 }
 
-}  // namespace
+BoneClusters numbered(std::vector<std::uint32_t> bone_of_triangle) {
+  BoneClusters result{{}, sorted_unique(bone_of_triangle)};
+  static_cast<Assignment&>(result) = make_assignment(std::move(bone_of_triangle));
+  return result;
+}
 
-BoneClusters assign_to_bones(const PoseSequence& sequence, std::span<const std::uint32_t> keys,
-                             const PoseSpace* space) {
-  const Rig& rig = *sequence.rig;
-  const std::size_t bone_count = rig.bone_maps.size() / sequence.key_count();
+/// Of the bones that move one of its corners.
+std::vector<std::uint32_t> best_in_space(const PoseSequence& sequence,
+                                         std::span<const std::uint32_t> keys,
+                                         std::size_t bone_count, const PoseSpace& space) {
   std::vector<Offer> offers(bone_count);
   for (std::uint32_t t = 0; t < sequence.triangles.size(); ++t)
-    for (const std::uint32_t bone : bones_of(rig, sequence.triangles[t]))
+    for (const std::uint32_t bone : bones_of(*sequence.rig, sequence.triangles[t]))
       offers[bone].triangles.push_back(t);
   std::vector<double> areas;
   for (const std::uint32_t key : keys) areas.push_back(surface_area(pose_box(sequence.pose(key))));
@@ -106,9 +111,23 @@ BoneClusters assign_to_bones(const PoseSequence& sequence, std::span<const std::
       owner[t] = bone;
       least[t] = offers[bone].areas[i];
     }
-  BoneClusters result{{}, sorted_unique(owner)};
-  static_cast<Assignment&>(result) = make_assignment(std::move(owner));
-  return result;
+  return owner;
+}
+
+}  // namespace
+
+BoneClusters assign_to_bones(const PoseSequence& sequence, const PoseTable& table,
+                             const PoseSpace* space) {
+  const std::size_t bone_count = sequence.rig->bone_maps.size() / sequence.key_count();
+  if (space != nullptr) return numbered(best_in_space(sequence, table.keys, bone_count, *space));
+  const BoxProblem problem{{table, sequence.triangles}, {0, row_box_areas(table), 1}};
+  std::vector<BoxCluster> bones(bone_count);
+  parallel_chunks(bone_count, 1, [&](std::size_t bone, std::size_t) {
+    bones[bone].maps = base_from_table(*sequence.rig, static_cast<std::uint32_t>(bone), table,
+                                       sequence.key_count());
+    bones[bone].work.weights = mean_area_weights(bones[bone].maps, problem.measure.model_areas);
+  });
+  return numbered(assign_to_smallest_boxes(problem, std::move(bones)));
 }
 
 }  // namespace mdk

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cstddef>
 #include <limits>
+#include <memory>
 #include <numeric>
+#include <optional>
 #include <span>
 #include <utility>
 
@@ -27,10 +29,10 @@ constexpr std::uint32_t kBoundRows = 6;
 /// The maps of one cluster as the kernels take them.
 struct CandidateMaps {
   std::vector<Affine3f> maps;  ///< R
-  AreaWeights weights;
+  FloatWeights weights;
 };
 
-/// Some consecutive triangles with their vertices gathered, and boxes of these.
+/// Some consecutive triangles with their vertices gathered.
 class TriangleBlock {
  public:
   TriangleBlock(const MovingMesh& mesh, std::size_t first, std::size_t count) {
@@ -49,14 +51,14 @@ class TriangleBlock {
 
   std::size_t size() const { return corners_.size() / 3; }
 
-  /// Areas of the triangles' boxes over every `step`-th row.
-  void measure(const CandidateMaps& candidate, std::uint32_t step, float* areas) {
-    boxes_.reset(vertex_count_);
-    for (std::uint32_t row = 0; row < row_count_; row += step)
-      extend_boxes(candidate.maps[row], points_.from(row * vertex_count_), vertex_count_,
-                   boxes_.row());
-    for (std::size_t t = 0; t < size(); ++t)
-      areas[t] = boxes_.triangle_area(&corners_[3 * t], candidate.weights);
+  /// Areas of the triangles' boxes over every `step`-th row; `boxes` is scratch space.
+  void measure(const CandidateMaps& candidate, std::uint32_t step, PointBoxes& boxes,
+               float* areas) const {
+    boxes.reset(vertex_count_);
+    extend_boxes({candidate.maps.data(), (row_count_ + step - 1) / step, step, points_.from(0),
+                  step * vertex_count_},
+                 vertex_count_, boxes.row());
+    triangle_box_areas(corners_.data(), size(), boxes.row(), candidate.weights.w, areas);
   }
 
  private:
@@ -64,13 +66,12 @@ class TriangleBlock {
   std::uint32_t row_count_ = 0;
   std::vector<std::uint32_t> corners_;  ///< 3 per triangle: numbers of gathered vertices
   PointArrays points_;                  ///< row by row
-  PointBoxes boxes_;
 };
 
 /// The part of the answer that one block of triangles has.
 class BlockAlternatives {
  public:
-  BlockAlternatives(TriangleBlock& block, std::span<const std::uint32_t> own,
+  BlockAlternatives(const TriangleBlock& block, std::span<const std::uint32_t> own,
                     std::span<const CandidateMaps> candidates)
       : block_(block), own_(own), candidates_(candidates), areas_(block.size()) {}
 
@@ -81,7 +82,7 @@ class BlockAlternatives {
     std::vector<float> bounds(candidates_.size() * size);
     std::vector<double> sums(candidates_.size());
     for (std::size_t c = 0; c < candidates_.size(); ++c) {
-      block_.measure(candidates_[c], step, &bounds[c * size]);
+      block_.measure(candidates_[c], step, boxes_, &bounds[c * size]);
       for (std::size_t t = 0; t < size; ++t) sums[c] += static_cast<double>(bounds[c * size + t]);
     }
     std::vector<std::uint32_t> order(candidates_.size());
@@ -100,7 +101,7 @@ class BlockAlternatives {
   }
 
   void look_at(std::uint32_t c, std::size_t first, BoxAlternatives& result) {
-    block_.measure(candidates_[c], 1, areas_.data());
+    block_.measure(candidates_[c], 1, boxes_, areas_.data());
     for (std::size_t i = 0; i < own_.size(); ++i) {
       const std::size_t t = first + i;
       if (own_[i] == c) {
@@ -113,10 +114,11 @@ class BlockAlternatives {
     }
   }
 
-  TriangleBlock& block_;
+  const TriangleBlock& block_;
   std::span<const std::uint32_t> own_;
   std::span<const CandidateMaps> candidates_;
   std::vector<float> areas_;
+  PointBoxes boxes_;
 };
 
 /// What a triangle would add to the cost of entering a cluster: its world boxes grow.
@@ -153,6 +155,21 @@ std::vector<std::uint32_t> reassigned(const BoxProblem& problem, const BoxCluste
 
 }  // namespace
 
+/// The triangles of a mesh, block by block.
+struct TriangleBlocks {
+  std::vector<TriangleBlock> blocks;
+
+  explicit TriangleBlocks(const MovingMesh& mesh) {
+    const std::size_t triangles = mesh.triangles.size();
+    std::vector<std::optional<TriangleBlock>> made((triangles + kBlockTriangles - 1) /
+                                                   kBlockTriangles);
+    parallel_chunks(triangles, kBlockTriangles, [&](std::size_t begin, std::size_t end) {
+      made[begin / kBlockTriangles].emplace(mesh, begin, end - begin);
+    });
+    for (std::optional<TriangleBlock>& block : made) blocks.push_back(*std::move(block));
+  }
+};
+
 BoxClustering fit_boxes(const BoxProblem& problem, std::vector<std::uint32_t> cluster_of_triangle) {
   BoxClustering result{make_assignment(std::move(cluster_of_triangle)), {}, 0};
   const ClusterMembers members = problem.mesh.members_of(result);
@@ -184,12 +201,13 @@ BoxAlternatives find_alternatives(const BoxProblem& problem, const BoxClustering
   std::vector<CandidateMaps> candidates(clustering.clusters.size());
   for (std::size_t c = 0; c < candidates.size(); ++c) {
     const BoxCluster& cluster = clustering.clusters[c];
-    candidates[c].weights = cluster.work.weights * problem.measure.triangle_weight;
+    candidates[c].weights = to_float(cluster.work.weights * problem.measure.triangle_weight);
     for (const Affine3d& map : cluster.maps) candidates[c].maps.push_back(to_float(map));
   }
+  if (problem.blocks == nullptr) problem.blocks = std::make_shared<TriangleBlocks>(problem.mesh);
   parallel_chunks(triangles, kBlockTriangles, [&](std::size_t begin, std::size_t end) {
-    TriangleBlock block(problem.mesh, begin, end - begin);
-    BlockAlternatives(block, std::span(clustering.cluster_of_triangle).subspan(begin, end - begin),
+    BlockAlternatives(problem.blocks->blocks[begin / kBlockTriangles],
+                      std::span(clustering.cluster_of_triangle).subspan(begin, end - begin),
                       candidates)
         .find(problem.mesh.poses.row_count(), begin, result);
   });

@@ -5,6 +5,8 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
+#include <span>
 #include <vector>
 
 #include "preprocess/cluster/common_moves.h"
@@ -13,10 +15,14 @@
 
 namespace mdk {
 
-/// What box clustering looks at.
+struct TriangleBlocks;
+
+/// What box clustering looks at. Not for use from several threads at once.
 struct BoxProblem {
   MovingMesh mesh;
   BoxMeasure measure;
+  /// The mesh as find_alternatives() takes it, once it was asked.
+  mutable std::shared_ptr<const TriangleBlocks> blocks = nullptr;
 };
 
 /// K clusters, fitted. It follows from the problem and the assignment alone.
@@ -68,5 +74,16 @@ BoxClustering dissolve_clusters(const BoxProblem& problem, BoxClustering cluster
 /// from where it is hardly needed to where it is missed. There may be fewer clusters afterwards.
 BoxClustering exchange_clusters(const BoxProblem& problem, const BoxClustering& clustering,
                                 std::uint32_t count);
+
+// rigid_parts.cpp
+
+/// Triangles of the connected parts that one map per row holds still, all parts that the same maps
+/// hold still together. Cost: O(rows * vertices).
+std::vector<std::vector<std::uint32_t>> find_rigid_parts(const MovingMesh& mesh);
+
+/// Each part that several clusters share moved into the one of them in which its boxes are
+/// smallest, fitted again.
+BoxClustering with_whole_parts(const BoxProblem& problem, BoxClustering clustering,
+                               std::span<const std::vector<std::uint32_t>> parts);
 
 }  // namespace mdk

@@ -24,6 +24,7 @@ constexpr std::size_t kWholeTriangles = 24'000;  // larger meshes are thinned to
 constexpr std::size_t kThinTriangles = 6'000;    // ...so many, which rarely share vertices
 constexpr std::size_t kFineEntries = 400'000, kMinFineKeys = 16;
 constexpr std::size_t kRestCandidates = 2;
+constexpr double kRestSearch = 2e8;  // multiply-adds
 constexpr double kRoughShare = 0.4;  // of the work that growth is
 
 constexpr std::uint32_t kMaxGrown = 80;    // clusters, where none are requested
@@ -43,7 +44,8 @@ struct BoxGrowthPlan {
   RelaxLimits relax{.min_gain = 0.005, .max_rounds = 3};
   int polish_rounds = 0;    ///< of careful cuts at the end, where growth ended because of the cost
   int exchange_rounds = 0;  ///< after all others
-  double min_stage_gain = 0.01;  ///< share of the cost that a stage must save to go on
+  bool keeps_parts_whole = false;  ///< those that move rigidly
+  double min_stage_gain = 0.01;    ///< share of the cost that a stage must save to go on
 
   std::uint32_t target() const { return clusters != 0 ? clusters : limit; }
   /// What one more cluster costs that decides nothing: all of it where their number is given.
@@ -128,13 +130,12 @@ BoxClustering exchanged(const BoxProblem& problem, const BoxClustering& clusteri
   return is_better ? next : clustering;
 }
 
-/// `start`: a cluster per triangle. `on_step` is called with the start and after each stage.
-Growth grow_boxes(const BoxProblem& problem, std::vector<std::uint32_t> start,
-                  const BoxGrowthPlan& plan, const OnGrowthStep& on_step) {
+/// `on_step` is called with the start and after each stage.
+Growth grow_boxes(const BoxProblem& problem, BoxClustering state, const BoxGrowthPlan& plan,
+                  const OnGrowthStep& on_step) {
   Growth growth;
   growth.stop_reason = StopReason::kCost;
   growth.rest_key = problem.mesh.poses.keys[problem.measure.rest_row];
-  BoxClustering state = fit_boxes(problem, std::move(start));
   const auto record = [&] {
     growth.steps.push_back(describe(problem, state));
     on_step(growth.steps.back());
@@ -166,6 +167,10 @@ Growth grow_boxes(const BoxProblem& problem, std::vector<std::uint32_t> start,
   }
   for (int round = 0; round < plan.exchange_rounds && state.cluster_count > 1; ++round)
     if (!advance(exchanged(problem, state, plan, round))) break;
+  if (plan.keeps_parts_whole) {
+    state = with_whole_parts(problem, std::move(state), find_rigid_parts(problem.mesh));
+    growth.steps.back() = describe(problem, state);
+  }
   static_cast<Assignment&>(growth) = std::move(state);
   return growth;
 }
@@ -201,22 +206,20 @@ ThinnedMesh thinned(const PoseTable& table, std::span<const Triangle> triangles,
   return mesh;
 }
 
-/// The best of the most promising rest rows by cost; the clustering is fitted to it.
-BoxClustering with_best_rest_row(BoxProblem& problem, BoxClustering clustering) {
-  const ClusterMembers members = problem.mesh.members_of(clustering);
-  const std::uint32_t first = problem.measure.rest_row;
-  std::uint32_t best = first;
-  for (const std::uint32_t row :
-       best_rest_rows(score_rest_poses(problem.mesh.poses, members), kRestCandidates)) {
-    if (row == first) continue;
-    problem.measure.rest_row = row;
-    BoxClustering candidate = fit_boxes(problem, clustering.cluster_of_triangle);
-    if (!(candidate.cost < clustering.cost)) continue;
-    clustering = std::move(candidate);
-    best = row;
+/// The assignment fitted to the best of some rest keys by cost.
+BoxClustering with_best_rest_key(BoxProblem& problem, const std::vector<std::uint32_t>& assignment,
+                                 std::span<const std::uint32_t> keys) {
+  BoxClustering best;
+  std::uint32_t best_row = 0;
+  for (const std::uint32_t key : keys) {
+    problem.measure.rest_row = row_of_key(problem.mesh.poses, key);
+    BoxClustering candidate = fit_boxes(problem, assignment);
+    if (best.cluster_count > 0 && !(candidate.cost < best.cost)) continue;
+    best = std::move(candidate);
+    best_row = problem.measure.rest_row;
   }
-  problem.measure.rest_row = best;
-  return clustering;
+  problem.measure.rest_row = best_row;
+  return best;
 }
 
 /// The row that explains the others best with one cluster.
@@ -242,12 +245,11 @@ Growth grow_roughly(const MovingMesh& mesh, const ClusterRequest& request,
   BoxGrowthPlan plan;
   plan.limit = request.clusters != 0 ? std::min(kRoughClusters, request.clusters) : kRoughClusters;
   Growth growth =
-      grow_boxes(problem, one_cluster(few.triangles.size()).cluster_of_triangle, plan, on_step);
-  BoxClustering fitted = fit_boxes(problem, growth.cluster_of_triangle);
-  if (!request.rest_key) fitted = with_best_rest_row(problem, std::move(fitted));
-  growth.rest_key = mesh.poses.keys[problem.measure.rest_row];
+      grow_boxes(problem, fit_boxes(problem, one_cluster(few.triangles.size()).cluster_of_triangle),
+                 plan, on_step);
   if (!is_thin) return growth;
 
+  BoxClustering fitted = fit_boxes(problem, growth.cluster_of_triangle);
   problem.measure.triangle_weight = 1;
   std::vector<std::uint32_t> assignment =
       assign_to_smallest_boxes({mesh, problem.measure}, std::move(fitted.clusters));
@@ -257,14 +259,27 @@ Growth grow_roughly(const MovingMesh& mesh, const ClusterRequest& request,
   return growth;
 }
 
+/// The rest poses that explain all others best with these clusters, out of all keys, and the one
+/// that they were grown with.
+std::vector<std::uint32_t> rest_candidates(const PoseSequence& sequence,
+                                           const ClusterRequest& request, const Growth& growth,
+                                           double unit) {
+  if (request.rest_key) return {*request.rest_key};
+  const ClusterMembers members =
+      make_cluster_members(sequence.triangles, growth, sequence.vertex_count);
+  std::vector<std::uint32_t> keys = best_rest_keys(
+      sequence, members, unit, {.count = kRestCandidates, .max_multiply_adds = kRestSearch});
+  keys.push_back(growth.rest_key);
+  return sorted_unique(std::move(keys));
+}
+
 /// The clusters of the rig's bones, where there is one and they are not too many: whoever made it
 /// knew what moves alike.
 std::optional<std::vector<std::uint32_t>> bone_start(const BoxProblem& problem,
                                                      const PoseSequence& sequence,
                                                      const BoxGrowthPlan& plan) {
   if (!sequence.rig) return std::nullopt;
-  std::vector<std::uint32_t> keys = sorted_unique(problem.mesh.poses.keys);
-  BoneClusters bones = assign_to_bones(sequence, keys, nullptr);
+  BoneClusters bones = assign_to_bones(sequence, problem.mesh.poses, nullptr);
   if (bones.cluster_count > plan.target()) return std::nullopt;
   return std::move(bones.cluster_of_triangle);
 }
@@ -278,26 +293,28 @@ Growth cluster_by_boxes(const PoseSequence& sequence, const ClusterRequest& requ
     farthest = std::max(farthest, growth_share(s.clusters));
     progress.report("decompose", farthest);
   };
-  const PoseTable few = sample_poses(sequence, kRoughKeys, request.rest_key, unit);
+  const PoseTable few = sample_poses(sequence, kRoughKeys, requested_rest_keys(request), unit);
   progress.report("decompose", farthest);
   Growth rough = grow_roughly({few, sequence.triangles}, request, on_step);
   farthest = std::max(farthest, kRoughShare);
   progress.report("decompose", farthest);
 
+  const std::vector<std::uint32_t> rest_keys = rest_candidates(sequence, request, rough, unit);
   const std::size_t affordable = kFineEntries / std::max(1u, sequence.vertex_count);
   const PoseTable many =
-      sample_poses(sequence, std::max(affordable, kMinFineKeys), rough.rest_key, unit);
-  const BoxProblem problem{{many, sequence.triangles},
-                           {row_of_key(many, rough.rest_key), row_box_areas(many), 1}};
+      sample_poses(sequence, std::max(affordable, kMinFineKeys), rest_keys, unit);
+  BoxProblem problem{{many, sequence.triangles}, {0, row_box_areas(many), 1}};
   BoxGrowthPlan plan;
   plan.clusters = request.clusters;
   plan.relax.max_rounds = 2;
   plan.polish_rounds = 1;
   plan.exchange_rounds = kExchangeRounds;
+  plan.keeps_parts_whole = request.clusters == 0;
   if (request.clusters != 0) plan.min_stage_gain = 0.0005;  // it is all that can be chosen
-  std::vector<std::uint32_t> start = std::move(rough.cluster_of_triangle);
-  if (std::optional<std::vector<std::uint32_t>> bones = bone_start(problem, sequence, plan))
-    if (fit_boxes(problem, *bones).cost < fit_boxes(problem, start).cost) start = std::move(*bones);
+  BoxClustering start = with_best_rest_key(problem, rough.cluster_of_triangle, rest_keys);
+  if (const auto bones = bone_start(problem, sequence, plan))
+    if (BoxClustering fitted = fit_boxes(problem, *bones); fitted.cost < start.cost)
+      start = std::move(fitted);
   Growth fine = grow_boxes(problem, std::move(start), plan, on_step);
   rough.steps.pop_back();  // the fine growth starts with it again
   fine.steps.insert(fine.steps.begin(), rough.steps.begin(), rough.steps.end());

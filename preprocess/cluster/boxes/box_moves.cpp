@@ -161,8 +161,8 @@ double cut_cost(const BoxMeasure& measure, const ClusterPoints& points, std::spa
     if (chosen.empty()) return std::numeric_limits<double>::infinity();
     const BoxCluster cluster = fit_box_cluster(measure, gather_subset(points, chosen));
     cost += cluster.work.cost();
-    areas[static_cast<int>(side)] = triangle_areas(
-        points, mapped_boxes(points, from_centered(points, cluster.maps)), cluster.work.weights);
+    PointBoxes boxes = mapped_boxes(points, from_centered(points, cluster.maps));
+    areas[static_cast<int>(side)] = triangle_areas(points, boxes, cluster.work.weights);
   }
   next.resize(cut.size());
   for (std::size_t t = 0; t < cut.size(); ++t) next[t] = areas[1][t] < areas[0][t];

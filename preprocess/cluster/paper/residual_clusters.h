@@ -64,11 +64,12 @@ ResidualClustering restart_from_prototypes(const ConnectedMesh& mesh,
                                            const ResidualClustering& clustering);
 
 /// Grows clusters on the rows of `mesh`, to `request.clusters` or until the next one would lower
-/// the residual by less than `request.stop_percent`, at most to 64. After each insertion Lloyd runs
-/// twice, from the clusters as they are and from prototypes (GFW06 restarts always; keeping wins
-/// about as often), and the lower residual stays. The rest pose, where it is not requested, is the
-/// one that GFW06 (3) prefers, searched again whenever the number of clusters has doubled.
-/// `on_step` is called after each step. There must be as many triangles as clusters are requested.
+/// the residual by less than `request.stop_percent`, at most to kMaxClusters. After each insertion
+/// Lloyd runs twice, from the clusters as they are and from prototypes (GFW06 restarts always;
+/// keeping wins about as often), and the lower residual stays. The rest pose, where it is not
+/// requested, is the one of the rows that GFW06 (3) prefers, searched again whenever the number of
+/// clusters has doubled. `on_step` is called after each step. There must be as many triangles as
+/// clusters are requested.
 Growth grow_by_residuals(const MovingMesh& mesh, const ClusterRequest& request,
                          const OnGrowthStep& on_step);
 

@@ -39,7 +39,9 @@ std::uint32_t render_everything(const ModelStorage& storage) {
   std::uint32_t hits = 0;
   for (const TechniqueInfo& technique : technique_table()) {
     Renderer renderer(model, technique.id);
-    for (const KeyInterval& at : {at_key(model.rest_key), KeyInterval{0, 1, 0.25f}}) {
+    const KeyInterval between =
+        model.holds_between_keys ? KeyInterval{0, 1, 0.25f} : at_key(model.key_count() - 1);
+    for (const KeyInterval& at : {at_key(model.rest_key), between}) {
       for (const ShadingInfo& shading : shading_table()) {
         const FrameRequest request{.at = at,
                                    .camera = sample_camera(),

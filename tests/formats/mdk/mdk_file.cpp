@@ -41,6 +41,7 @@ void MdkFileTest::expect_refused(const Bytes& bytes, const std::string& words) {
 void expect_same_model(const ModelView& mapped, const ModelStorage& original) {
   EXPECT_EQ(mapped.vertex_count, original.vertex_count);
   EXPECT_EQ(mapped.rest_key, original.rest_key);
+  EXPECT_EQ(mapped.holds_between_keys, original.holds_between_keys);
   EXPECT_EQ(mapped.bounds, original.bounds);
   EXPECT_EQ(mapped.rest_diagonal, original.rest_diagonal);
   EXPECT_THAT(mapped.clips, testing::ElementsAreArray(original.clips));

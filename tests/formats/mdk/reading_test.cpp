@@ -233,6 +233,18 @@ TEST_F(MdkFileTest, RefusesUnknownPoseKinds) {
   expect_refused(bytes, "stores its poses as kind 3");
 }
 
+TEST_F(MdkFileTest, KnowsWhetherBoxesHoldBetweenKeys) {
+  ModelStorage storage = sample_model();
+  storage.holds_between_keys = false;
+  const std::string path = written(storage);
+  expect_same_model(MdkFile(path).model(), storage);
+  Bytes bytes = read_bytes(path);
+  const std::size_t field = find_section(bytes, "MODL").offset + 24;
+  EXPECT_EQ(get<std::uint32_t>(bytes, field), 0x10000u) << "a pose kind that older readers refuse";
+  put(bytes, field, std::uint32_t{0x20000});
+  expect_refused(bytes, "flags this program does not know");
+}
+
 TEST_F(MdkFileTest, RefusesCountsThatDisagreeAndNamesOfNoClip) {
   const Bytes bytes = sample_bytes();
   const std::size_t model = find_section(bytes, "MODL").offset;

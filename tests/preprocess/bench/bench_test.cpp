@@ -32,6 +32,22 @@ class Bench : public BakedSample {
   }
 };
 
+TEST_F(Bench, TheCostPredictedOfAFileIsTheOneItsBakeReported) {
+  const std::string file = folder_.file("again.mdk");
+  ASSERT_EQ(run_mdprep({"bake", source(), "-o", file, "-q", "--segments", "3", "--report",
+                        folder_.file("report.json")})
+                .status,
+            0);
+  ASSERT_EQ(run_mdprep({"bench", file, "--techniques", "fuzzy-bvh", "--size", "64x64", "--frames",
+                        "1", "--rounds", "1", "-q", "--json", folder_.file("b.json")})
+                .status,
+            0);
+  const double reported =
+      Json::parse(read_text(folder_.file("report.json")))["sah_cost"].get<double>();
+  const Json results = Json::parse(read_text(folder_.file("b.json")));
+  EXPECT_NEAR(results["models"][0]["predicted_cost"].get<double>(), reported, 1e-4 * reported);
+}
+
 TEST_F(Bench, JsonHasTheFieldsOfTheContractAndNoMismatch) {
   const Outcome run = bench({"--frames", "5", "--json", folder_.file("b.json")});
   ASSERT_EQ(run.status, 0) << run.err;
@@ -41,7 +57,9 @@ TEST_F(Bench, JsonHasTheFieldsOfTheContractAndNoMismatch) {
   EXPECT_EQ(report["schema"], "mdprep-bench/1");
   const Json& model = report["models"][0];
   EXPECT_EQ(names_of(model),
-            (std::vector<std::string>{"file", "triangles", "keys", "clusters", "techniques"}));
+            (std::vector<std::string>{"file", "triangles", "keys", "clusters", "between_keys",
+                                      "predicted_cost", "techniques"}));
+  EXPECT_EQ(model["between_keys"], true);
   EXPECT_EQ(model["triangles"], TubeShape{}.triangles());
   EXPECT_EQ(model["keys"], kSampleKeys);
   ASSERT_EQ(model["techniques"].size() + 1, technique_table().size());

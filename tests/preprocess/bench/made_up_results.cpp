@@ -21,6 +21,7 @@ TechniqueBench made_up_technique(const std::string& id, double factor) {
     frame.counters.leaf_triangles = 40;
     frame.counters.triangle_tests = 200;
     frame.counters.clusters_entered = 50;
+    frame.hits = 50;
     frame.structure_bytes = 1024 * (technique.frames.size() + 1);
     technique.frames.push_back(frame);
   }

@@ -34,9 +34,10 @@ TEST(Report, HasEveryTableAndFigureOfBothPapersAndOurOwn) {
   const Report report = make_report(made_up_results());
   std::vector<std::string> ids;
   for (const Section& s : report.sections) ids.push_back(s.id);
-  EXPECT_THAT(ids, ElementsAre("summary", "gfw06-table-1", "gfw06-figure-7", "gfw06-figure-8",
-                               "lo09-table-1", "lo09-time-to-image", "lo09-trace",
-                               "lo09-triangle-tests", "lo09-node-tests", "lo09-update", "crossover",
+  EXPECT_THAT(ids, ElementsAre("summary", "gfw06-table-1", "gfw06-second-level", "gfw06-figure-7",
+                               "gfw06-figure-8", "lo09-table-1", "lo09-table-4-2", "lo09-table-4-4",
+                               "lo09-time-to-image", "lo09-trace", "lo09-triangle-tests",
+                               "lo09-node-tests", "lo09-update", "predicted-cost", "crossover",
                                "memory", "bake", "machines", "details", "method"));
   for (const char* id :
        {"gfw06-figure-7", "gfw06-figure-8", "lo09-time-to-image", "lo09-trace",
@@ -67,6 +68,74 @@ TEST(Report, ShowsThePapersOwnTable) {
   ASSERT_EQ(paper.rows.size(), 5u);
   EXPECT_THAT(paper.rows[2], ElementsAre("cow", "5,804", "204", "20", "634,173", "946,558", "1.49",
                                          "0.92", "3.68", "4.0", "19.21", "12.49", "1.53"));
+}
+
+/// The made-up hand, baked in each of the other ways.
+BenchResults with_variants() {
+  BenchResults results = made_up_results();
+  BenchRun& run = results.runs[0];
+  const ModelBench hand = run.models[0];
+  double factor = 2;
+  for (const char* variant : {"paper", "bones", "space", "first", "level"}) {
+    ModelBench model = hand;
+    model.file = std::string("out/hand-") + variant + ".mdk";
+    model.predicted_cost = 3 * factor;
+    model.techniques.clear();
+    for (const char* id :
+         {"fuzzy-bvh", "fuzzy-kdtree", "static-kdtree", "rebuild-bvh", "refit-bvh", "decomp-refit"})
+      model.techniques.push_back(made_up_technique(id, factor));
+    run.models.push_back(std::move(model));
+    factor += 1;
+  }
+  return results;
+}
+
+TEST(Report, ComparesWhatWasBakedInOtherWays) {
+  BenchResults results = with_variants();
+  for (BenchFrame& frame :
+       results.runs[0].models[5].techniques[4].frames) {  // hand-first, refitted
+    frame.counters.node_visits = 600;
+    frame.counters.triangle_tests = 250;
+  }
+  const Report report = make_report(results);
+  const auto table = [&](const char* id) { return block<Table>(section(report, id)); };
+  EXPECT_EQ(table("summary").rows.size(), 2u) << "the usual bakes: hand and hand-split1";
+  ASSERT_EQ(table("gfw06-table-1").rows.size(), 5u) << "hand and its variants but the single pose";
+  EXPECT_EQ(table("gfw06-table-1").rows[1][0], "hand-paper");
+  EXPECT_EQ(table("gfw06-table-1").rows[1][7], "1.76") << "the paper's HAND";
+  const Table level = table("gfw06-second-level");
+  ASSERT_EQ(level.rows.size(), 1u);
+  EXPECT_EQ(level.rows[0][0], "hand-level");
+  const Table four = std::get<Table>(section(report, "lo09-table-1").blocks[1]);
+  ASSERT_EQ(four.rows.size(), 2u);
+  EXPECT_EQ(four.rows[1][0], "hand-bones");
+  // Made-up: 300 visits and 200 tests a frame, 50 hits.
+  EXPECT_THAT(table("lo09-table-4-2").rows,
+              ElementsAre(ElementsAre("hand", "12.000", "5.000", "6.000", "4.000", "**0.50**",
+                                      "**0.80**")));
+  // 26.5 ms times 3 for bones and times 4 for the pose space.
+  EXPECT_THAT(table("lo09-table-4-4").rows,
+              ElementsAre(ElementsAre("hand", "9.43", "12.58", "**1.33**")));
+  const Figure growth = block<Figure>(section(report, "gfw06-figure-7"));
+  ASSERT_EQ(growth.charts.size(), 2u);
+  EXPECT_EQ(growth.charts[1].title, "hand-paper");
+  const Figure predicted = block<Figure>(section(report, "predicted-cost"));
+  ASSERT_EQ(predicted.charts.size(), 1u);
+  EXPECT_EQ(predicted.charts[0].series.size(), 5u) << "those whose prediction is known";
+  EXPECT_THAT(predicted.caption, HasSubstr("over these models: 1.00"));
+  // 2 times 20 ms over 50 hits.
+  EXPECT_DOUBLE_EQ(predicted.charts[0].series[0].points[0].y, 8e5);
+  EXPECT_EQ(block<Figure>(section(report, "lo09-trace")).charts.size(), 1u) << "no variants";
+}
+
+TEST(RankCorrelation, IsSpearmans) {
+  EXPECT_DOUBLE_EQ(rank_correlation({1, 2, 3, 4}, {10, 20, 25, 1000}), 1);
+  EXPECT_DOUBLE_EQ(rank_correlation({1, 2, 3, 4}, {4, 3, 2, 1}), -1);
+  EXPECT_DOUBLE_EQ(rank_correlation({1, 2, 3}, {5, 5, 5}), 0);
+  // IQ and hours of television, the textbook's example: -29 / 165.
+  EXPECT_NEAR(rank_correlation({106, 100, 86, 101, 99, 103, 97, 113, 112, 110},
+                               {7, 27, 2, 50, 28, 29, 20, 12, 6, 17}),
+              -29.0 / 165, 1e-12);
 }
 
 TEST(Report, SaysWhereKdTreesWereNotBuiltAlikeAndWhatWasNotCounted) {
@@ -116,7 +185,8 @@ TEST(Report, AModelWithoutBakeReportOrManyKeysStillMakesAReport) {
   model.techniques[0].frames.resize(1);
   const Report report = make_report(results);
   for (const char* id :
-       {"gfw06-table-1", "gfw06-figure-7", "gfw06-figure-8", "lo09-trace", "crossover", "bake"})
+       {"gfw06-table-1", "gfw06-second-level", "gfw06-figure-7", "gfw06-figure-8", "lo09-table-4-2",
+        "lo09-table-4-4", "lo09-trace", "predicted-cost", "crossover", "bake"})
     EXPECT_FALSE(block<Paragraph>(section(report, id)).text.empty()) << "says what is missing";
   EXPECT_THAT(html_page(report), HasSubstr("</html>"));
 }

@@ -122,8 +122,8 @@ BoxedModel adversarial_model(std::uint32_t seed) {
     model.local_from_world.push_back(
         adversarial_map(model.local_from_world.back(), any_number(random), random));
   model.segments = {{0, sequence.key_count() - 1}};
-  result.boxes =
-      fuzzy_boxes(sequence, whole_members(sequence), model.local_from_world, model.segments[0]);
+  result.boxes = fuzzy_boxes(sequence, whole_members(sequence), model.local_from_world,
+                             model.segments[0], BetweenKeys::kBound);
   return result;
 }
 
@@ -161,7 +161,8 @@ TEST(FuzzyBoxes, AreAsSmallAsTheTrianglesOfRigidParts) {
       });
   std::vector<Affine3f> maps;
   for (const Affine3d& a : world_from_local) maps.push_back(to_float(inverse(a)));
-  const std::vector<Aabb> boxes = fuzzy_boxes(sequence, whole_members(sequence), maps, {0, 11});
+  const std::vector<Aabb> boxes =
+      fuzzy_boxes(sequence, whole_members(sequence), maps, {0, 11}, BetweenKeys::kBound);
   for (std::size_t t = 0; t < boxes.size(); ++t) {
     Aabbd rest;
     for (const std::uint32_t v : mesh.triangles[t].v) rest.extend(mesh.vertices[v]);

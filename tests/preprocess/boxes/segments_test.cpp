@@ -132,7 +132,8 @@ TEST(Segments, OfLongAnimationsAreAsManyAsAskedFor) {
   const ClusterMembers members = whole_members(sequence);
   const std::vector<Affine3f> maps(700);
   for (const std::uint32_t count : {2u, 50u, 65u, 200u, 349u, 350u, 698u}) {
-    const std::vector<Segment> segments = choose_segments(sequence, members, maps, count);
+    const std::vector<Segment> segments =
+        choose_segments(sequence, members, maps, count, BetweenKeys::kBound);
     ASSERT_EQ(segments.size(), count);
     EXPECT_EQ(segments.front().first_key, 0u);
     EXPECT_EQ(segments.back().last_key, 699u);

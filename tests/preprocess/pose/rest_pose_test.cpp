@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -76,27 +77,52 @@ TEST(RestPose, ScoresAgreeWithFittingEachPairOfPoses) {
   const PoseSequence sequence = wild_motion(11, 7);
   const PoseTable table = whole_table(sequence);
   const ClusterMembers members = whole_members(sequence);
-  const RestPoseScores scores = score_rest_poses(table, members);
-  ASSERT_EQ(scores.rows.size(), 7u);
+  const std::vector<double> explaining = score_rest_poses(table, members);
+  const std::vector<double> explained =
+      score_rest_poses(table, members, RestPoseRule::kIsExplained);
+  ASSERT_EQ(explaining.size(), 7u);
+  ASSERT_EQ(explained.size(), 7u);
   FitOptions plain;
   plain.ridge = 0;
+  const auto left_of = [&](std::uint32_t target, std::uint32_t source) {
+    return fit_affine(pairs_of(table, members, source, target).moments(), plain).residual;
+  };
   for (std::uint32_t r = 0; r < 7; ++r) {
-    double sum = 0;
+    double of_others = 0, of_itself = 0;
     for (std::uint32_t t = 0; t < 7; ++t) {
-      sum += fit_affine(pairs_of(table, members, r, t).moments(), plain).residual;
+      of_others += left_of(t, r);
+      of_itself += left_of(r, t);  // GFW06 (3), squared
     }
-    EXPECT_NEAR(scores.residuals[r], sum, 1e-6 * sum + 1e-9) << "row " << r;
+    EXPECT_NEAR(explaining[r], of_others, 1e-6 * of_others + 1e-9) << "row " << r;
+    EXPECT_NEAR(explained[r], of_itself, 1e-6 * of_itself + 1e-9) << "row " << r;
+    EXPECT_GT(std::abs(of_others - of_itself), 1e-3 * of_itself) << "both rules say the same";
   }
 }
 
-TEST(RestPose, PastTheBudgetCandidatesAreFewer) {
-  const PoseSequence sequence = wild_motion(12, 40);
-  const RestPoseScores scores =
-      score_rest_poses(whole_table(sequence), whole_members(sequence),
-                       RestPoseRule::kExplainsOthers, 4.5 * 10 * 10 * sequence.vertex_count);
-  EXPECT_LE(scores.rows.size(), 11u);
-  EXPECT_GE(scores.rows.size(), 5u);
-  EXPECT_EQ(scores.rows.size(), scores.residuals.size());
+TEST(RestPose, ThePapersRuleFallsForAShrunkenPose) {
+  const PoseSequence sequence = bumps_around(4, 9, 0.01);
+  EXPECT_EQ(best_rest_rows(score_rest_poses(whole_table(sequence), whole_members(sequence),
+                                            RestPoseRule::kIsExplained),
+                           1)[0],
+            1u);
+}
+
+TEST(RestPose, EveryKeyOfALongSequenceIsACandidateWhateverTheBudget) {
+  // The best key is one that no even or farthest-point sample of a few keys would hold.
+  for (const std::uint32_t middle : {3u, 37u, 58u}) {
+    const PoseSequence sequence = bumps_around(middle, 60, 1);
+    const double unit = pose_unit(sequence);
+    const auto best_keys = [&](double budget) {
+      return best_rest_keys(sequence, whole_members(sequence), unit,
+                            {.count = 3, .max_multiply_adds = budget});
+    };
+    EXPECT_EQ(best_keys(1e9)[0], middle);
+    for (const double budget : {1.0, 1e5}) {  // fewer vertices and targets, not fewer candidates
+      const std::vector<std::uint32_t> keys = best_keys(budget);
+      ASSERT_EQ(keys.size(), 3u);
+      EXPECT_TRUE(std::ranges::find(keys, middle) != keys.end()) << middle << " at " << budget;
+    }
+  }
 }
 
 }  // namespace

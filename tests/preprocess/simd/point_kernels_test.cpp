@@ -92,6 +92,12 @@ Results run_all() {
     for (const float turn : {0.0f, -0.6f, 1.7f})
       extend_boxes(some_map(turn), p.row(), n, boxes.row());
     results.boxes.push_back(boxes);
+    std::vector<std::uint32_t> corners(3 * n);
+    for (std::size_t i = 0; i < corners.size(); ++i)
+      corners[i] = static_cast<std::uint32_t>(i * 7 % n);
+    std::vector<float> areas(n);
+    triangle_box_areas(corners.data(), n, boxes.row(), {0.5f, 2, 3}, areas.data());
+    results.distances.insert(results.distances.end(), areas.begin(), areas.end());
   }
   return results;
 }
@@ -139,6 +145,52 @@ TEST_P(PointKernels, BoxesHoldWhatTheMapsSendThere) {
         EXPECT_EQ(boxes.lo[axis][i], std::min(a[axis], b[axis]));
         EXPECT_EQ(boxes.hi[axis][i], std::max(a[axis], b[axis]));
       }
+    }
+  }
+}
+
+TEST_P(PointKernels, BoxesOfManyRowsAreThoseOfEachRowAlone) {
+  constexpr std::size_t kRows = 5, kStride = 40;
+  const Points p(kRows * kStride, 12);
+  std::vector<Affine3f> maps;
+  for (std::size_t row = 0; row < kRows; ++row)
+    maps.push_back(some_map(0.3f * static_cast<float>(row)));
+  for (const std::size_t n : {1u, 7u, 16u, 33u, 40u})
+    for (const std::size_t step : {1u, 2u}) {
+      Boxes together(n), alone(n);
+      extend_boxes({maps.data(), (kRows + step - 1) / step, step, p.row(), step * kStride}, n,
+                   together.row());
+      for (std::size_t row = 0; row < kRows; row += step) {
+        const std::size_t at = row * kStride;
+        extend_boxes(maps[row], {&p.x[at], &p.y[at], &p.z[at]}, n, alone.row());
+      }
+      EXPECT_TRUE(together == alone) << n << " points, every " << step;
+    }
+}
+
+TEST_P(PointKernels, AreasAreThoseOfTheTrianglesBoxes) {
+  for (const std::size_t n : kAnyCounts) {
+    const Points p(n, 13);
+    Boxes boxes(n);
+    for (const float turn : {0.2f, 0.9f}) extend_boxes(some_map(turn), p.row(), n, boxes.row());
+    std::mt19937 random(14);
+    std::vector<std::uint32_t> corners;
+    for (std::size_t i = 0; i < 3 * n; ++i)
+      corners.push_back(static_cast<std::uint32_t>(random() % n));
+    std::vector<float> areas(n);
+    triangle_box_areas(corners.data(), n, boxes.row(), {0.5f, 2, 3}, areas.data());
+    for (std::size_t t = 0; t < n; ++t) {
+      double e[3];
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        float lo = 1e9f, hi = -1e9f;
+        for (std::size_t c = 0; c < 3; ++c) {
+          lo = std::min(lo, boxes.lo[axis][corners[3 * t + c]]);
+          hi = std::max(hi, boxes.hi[axis][corners[3 * t + c]]);
+        }
+        e[axis] = static_cast<double>(hi) - static_cast<double>(lo);
+      }
+      const double area = 2 * (0.5 * e[0] * e[1] + 2 * e[1] * e[2] + 3 * e[2] * e[0]);
+      EXPECT_NEAR(areas[t], area, 1e-5 * area);
     }
   }
 }
