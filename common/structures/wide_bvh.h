@@ -37,9 +37,10 @@ class WideBvhChild {
 
 /// Rows of `bounds`: low x, high x, low y, high y, low z, high z; one column per child. Columns
 /// from `count` on repeat column 0, so that they hold numbers.
-struct alignas(64) WideBvhNode {
-  float bounds[6][kBvhWidth];
-  WideBvhChild child[kBvhWidth];
+template <std::uint32_t kWidth>
+struct alignas(64) WideNode {
+  float bounds[6][kWidth];
+  WideBvhChild child[kWidth];
   std::uint32_t count;
 
   Aabb box(std::uint32_t c) const {
@@ -59,12 +60,14 @@ struct alignas(64) WideBvhNode {
   }
   /// Fills the columns no child needs; to be called after the last set_box().
   void pad() {
-    for (std::uint32_t c = count; c < kBvhWidth; ++c) {
+    for (std::uint32_t c = count; c < kWidth; ++c) {
       set_box(c, box(0));
       child[c] = child[0];
     }
   }
 };
+
+using WideBvhNode = WideNode<kBvhWidth>;
 
 /// Node 0 is the root, also of a single leaf; every child node has a higher index than its parent,
 /// and leaves are numbered in the order the nodes list them, until they are rotated. No items: no

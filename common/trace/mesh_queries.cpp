@@ -224,7 +224,7 @@ void find_all_hits(const RayTracer& tracer, const QueryRay& ray, const KeyInterv
     if (!local.meets(bounds, t_max)) continue;
     stack.assign(1, 0);
     while (!stack.empty()) {
-      const WideBvhNode& node = tree.nodes[stack.back()];
+      const auto& node = tree.nodes[stack.back()];
       stack.pop_back();
       for (std::uint32_t i = 0; i < node.count; ++i) {
         if (!local.meets(node.box(i), t_max)) continue;
@@ -303,7 +303,7 @@ QueryHit find_closest_point(const RayTracer& tracer, const Vec3f& point, float r
     if (!locals[next.cluster].known)
       locals[next.cluster] = make_local_point(model, p, at, next.cluster, tree.nodes[0].box());
     if (!next.child.is_leaf()) {
-      const WideBvhNode& node = tree.nodes[next.child.index()];
+      const auto& node = tree.nodes[next.child.index()];
       for (std::uint32_t i = 0; i < node.count; ++i)
         push({locals[next.cluster].bound(node.box(i)), next.cluster, node.child[i]});
       continue;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "common/base/parallel.h"
+#include "common/structures/bvh.h"
 
 namespace mdk {
 namespace {
@@ -59,32 +60,89 @@ void append_ray_blocks(std::span<const std::uint32_t> triangles, std::span<const
   }
 }
 
-std::vector<WideBvhNode> take_nodes(WideBvh tree, std::uint32_t first,
+/// Makes wide nodes of a binary hierarchy: a node's largest inner child gives way to its own two
+/// until there are sixteen.
+class Widener {
+ public:
+  Widener(const Bvh& binary, std::uint32_t first, std::span<const Triangle> triangles,
+          std::vector<RayBlock>& blocks)
+      : binary_(binary), first_(first), triangles_(triangles), blocks_(blocks) {}
+
+  std::vector<RayNode> run() {
+    if (!binary_.nodes.empty()) fill(0);
+    return std::move(nodes_);
+  }
+
+ private:
+  std::uint32_t fill(std::uint32_t root) {
+    const auto index = static_cast<std::uint32_t>(nodes_.size());
+    nodes_.emplace_back();
+    std::uint32_t part[kRayWidth] = {root}, count = 1;
+    while (count < kRayWidth) {
+      const std::uint32_t widest = find_widest(std::span(part).first(count));
+      if (widest == count) break;
+      const std::uint32_t children = binary_.nodes[part[widest]].first;
+      part[widest] = children;
+      part[count++] = children + 1;
+    }
+    for (std::uint32_t c = 0; c < count; ++c) {
+      const BvhNode& node = binary_.nodes[part[c]];
+      const WideBvhChild child =
+          node.is_leaf() ? WideBvhChild::leaf(add_leaf(node)) : WideBvhChild::inner(fill(part[c]));
+      nodes_[index].child[c] = child;
+      nodes_[index].set_box(c, node.box());
+    }
+    nodes_[index].count = count;
+    nodes_[index].pad();
+    return index;
+  }
+
+  /// Among the inner ones; as many as there are where none is.
+  std::uint32_t find_widest(std::span<const std::uint32_t> parts) const {
+    auto widest = static_cast<std::uint32_t>(parts.size());
+    double area = -1;
+    for (std::uint32_t i = 0; i < parts.size(); ++i) {
+      const BvhNode& node = binary_.nodes[parts[i]];
+      if (node.is_leaf() || !(half_area(node.box()) > area)) continue;
+      area = half_area(node.box());
+      widest = i;
+    }
+    return widest;
+  }
+
+  std::uint32_t add_leaf(const BvhNode& leaf) {
+    const auto number = static_cast<std::uint32_t>(blocks_.size());
+    in_leaf_.clear();
+    for (std::uint32_t i = 0; i < leaf.count; ++i)
+      in_leaf_.push_back(first_ + binary_.refs[leaf.first + i]);
+    append_ray_blocks(in_leaf_, triangles_, blocks_);
+    return number;
+  }
+
+  const Bvh& binary_;
+  const std::uint32_t first_;
+  const std::span<const Triangle> triangles_;
+  std::vector<RayBlock>& blocks_;
+  std::vector<RayNode> nodes_;
+  std::vector<std::uint32_t> in_leaf_;
+};
+
+std::vector<RayNode> build_ray_tree(std::span<const Aabb> boxes, int bins, std::uint32_t first,
                                     std::span<const Triangle> triangles,
                                     std::vector<RayBlock>& blocks) {
-  std::vector<std::uint32_t> first_block, in_leaf;
-  for (std::uint32_t leaf = 0; leaf < tree.leaf_count(); ++leaf) {
-    in_leaf.clear();
-    for (const std::uint32_t item : tree.leaf(leaf)) {
-      if (item == kNoItem) break;
-      in_leaf.push_back(first + item);
-    }
-    first_block.push_back(static_cast<std::uint32_t>(blocks.size()));
-    append_ray_blocks(in_leaf, triangles, blocks);
-  }
-  for (WideBvhNode& node : tree.nodes)
-    for (WideBvhChild& child : node.child)
-      if (child.is_leaf()) child = WideBvhChild::leaf(first_block[child.index()]);
-  tree.nodes.shrink_to_fit();
+  const Bvh binary =
+      build_bvh(boxes, {.bins = bins, .max_leaf = kBlockTriangles, .block = kBlockTriangles});
+  std::vector<RayNode> nodes = Widener(binary, first, triangles, blocks).run();
+  nodes.shrink_to_fit();
   blocks.shrink_to_fit();
-  return std::move(tree.nodes);
+  return nodes;
 }
 
 RaySegment::RaySegment(const ModelView& model, std::uint32_t segment)
     : nodes_(model.cluster_count()), blocks_(nodes_.size()), trees_(nodes_.size()) {
   parallel_chunks(nodes_.size(), 1, [&](std::size_t c, std::size_t) {
-    nodes_[c] = take_nodes(build_wide_bvh(model.cluster_fuzzy_boxes(segment, c), kBins),
-                           model.clusters[c].first_triangle, model.triangles, blocks_[c]);
+    nodes_[c] = build_ray_tree(model.cluster_fuzzy_boxes(segment, c), kBins,
+                               model.clusters[c].first_triangle, model.triangles, blocks_[c]);
     if (nodes_[c].empty()) return;
     trees_[c] = {nodes_[c], blocks_[c].data(), {}};
     const Aabb box = nodes_[c][0].box();
@@ -95,7 +153,7 @@ RaySegment::RaySegment(const ModelView& model, std::uint32_t segment)
 
 std::size_t RaySegment::bytes() const {
   std::size_t sum = trees_.size() * (sizeof(RayTree) + sizeof nodes_[0] + sizeof blocks_[0]);
-  for (const auto& nodes : nodes_) sum += nodes.size() * sizeof(WideBvhNode);
+  for (const auto& nodes : nodes_) sum += nodes.size() * sizeof(RayNode);
   for (const auto& blocks : blocks_) sum += blocks.size() * sizeof(RayBlock);
   return sum;
 }

@@ -31,14 +31,15 @@ class RaySegment {
   }
 
  private:
-  std::vector<std::vector<WideBvhNode>> nodes_;  ///< by cluster
-  std::vector<std::vector<RayBlock>> blocks_;    ///< by cluster
+  std::vector<std::vector<RayNode>> nodes_;    ///< by cluster
+  std::vector<std::vector<RayBlock>> blocks_;  ///< by cluster
   std::vector<RayTree> trees_;
 };
 
-/// The nodes of a tree over triangles, which count from `first`, with links to the first blocks of
-/// leaves, which are appended to `blocks`.
-std::vector<WideBvhNode> take_nodes(WideBvh tree, std::uint32_t first,
+/// A hierarchy over the boxes of triangles, which count from `first`; the links of its leaves are
+/// numbers of blocks, which are appended to `blocks`. Node 0 is the root; children have higher
+/// indices than their parents. Runs in parallel. Cost: O(N log N).
+std::vector<RayNode> build_ray_tree(std::span<const Aabb> boxes, int bins, std::uint32_t first,
                                     std::span<const Triangle> triangles,
                                     std::vector<RayBlock>& blocks);
 

@@ -46,6 +46,8 @@ struct ScaledRay {
     hit.t = t_max_;
     return hit;
   }
+  /// A t of the caller's in our lengths.
+  float scaled(float t) const { return static_cast<float>(t * t_scale_); }
   /// What directions were multiplied by.
   double direction_scale() const { return inverse_; }
   QueryHit in_callers_lengths(const RayHit& hit) const {
@@ -55,8 +57,6 @@ struct ScaledRay {
 
  private:
   static constexpr float kLargest = std::numeric_limits<float>::max();
-
-  float scaled(float t) const { return static_cast<float>(t * t_scale_); }
 
   double t_scale_ = 1, inverse_ = 1;  ///< from the caller's t to ours, and back
   float t_max_ = 0;

@@ -32,8 +32,7 @@ WorldTree::WorldTree(const ModelView& model, const std::vector<std::uint32_t>& p
       for (const Vec3f& v : {a, b, c}) boxes[t].extend(finite ? v : Vec3f{});
     }
   });
-  WideBvh tree = build_wide_bvh(boxes, kBins);
-  nodes_ = take_nodes(std::move(tree), 0, triangles, blocks_);
+  nodes_ = build_ray_tree(boxes, kBins, 0, triangles, blocks_);
 }
 
 PosedWorldTree::PosedWorldTree(const WorldTree& tree, const VertexSource& source)
@@ -42,7 +41,7 @@ PosedWorldTree::PosedWorldTree(const WorldTree& tree, const VertexSource& source
   std::vector<Aabb> boxes(blocks.size());
   pose_blocks(blocks, source, posed_.data(), boxes.data());
   for (std::size_t i = nodes_.size(); i-- > 0;) {
-    WideBvhNode& node = nodes_[i];
+    RayNode& node = nodes_[i];
     for (std::uint32_t c = 0; c < node.count; ++c) {
       const std::uint32_t below = node.child[c].index();
       if (!node.child[c].is_leaf()) {

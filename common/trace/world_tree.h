@@ -19,14 +19,14 @@ class WorldTree {
   WorldTree(const ModelView& model, const std::vector<std::uint32_t>& place_of_vertex,
             const VertexSource& source);
 
-  const std::vector<WideBvhNode>& nodes() const { return nodes_; }
+  const std::vector<RayNode>& nodes() const { return nodes_; }
   const std::vector<RayBlock>& blocks() const { return blocks_; }
   std::size_t bytes() const {
-    return nodes_.size() * sizeof(WideBvhNode) + blocks_.size() * sizeof(RayBlock);
+    return nodes_.size() * sizeof(RayNode) + blocks_.size() * sizeof(RayBlock);
   }
 
  private:
-  std::vector<WideBvhNode> nodes_;  ///< links of leaves are numbers of blocks
+  std::vector<RayNode> nodes_;  ///< links of leaves are numbers of blocks
   std::vector<RayBlock> blocks_;
 };
 
@@ -38,11 +38,11 @@ class PosedWorldTree {
 
   const PosedScene& scene() const { return scene_; }
   std::size_t bytes() const {
-    return nodes_.size() * sizeof(WideBvhNode) + posed_.size() * sizeof(PosedRayBlock);
+    return nodes_.size() * sizeof(RayNode) + posed_.size() * sizeof(PosedRayBlock);
   }
 
  private:
-  std::vector<WideBvhNode> nodes_;
+  std::vector<RayNode> nodes_;
   std::vector<PosedRayBlock> posed_;
   PosedScene scene_;
 };

@@ -1,5 +1,6 @@
 // mdprep bench: the techniques side by side, timed, counted and judged by brute force; and what is
 // made of results that are there already.
+#include <algorithm>
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -7,11 +8,15 @@
 #include "common/base/error.h"
 #include "common/base/isa.h"
 #include "common/trace/technique.h"
+#include "formats/files/file_kind.h"
 #include "formats/mdk/mdk_file.h"
+#include "formats/mds/mds_file.h"
 #include "preprocess/bench/comparison.h"
 #include "preprocess/bench/measurement.h"
 #include "preprocess/bench/rays.h"
 #include "preprocess/bench/report.h"
+#include "preprocess/bench/scene_frames.h"
+#include "preprocess/bench/scene_rays.h"
 #include "preprocess/boxes/model_assembly.h"
 #include "preprocess/commands/command_line.h"
 #include "preprocess/tool/files.h"
@@ -170,16 +175,20 @@ void print_run(const BenchRun& run) {
         std::cout << model.name() << " " << technique.id << ": " << technique.note << "\n";
 }
 
+bool is_scene(const std::string& path) { return lower_extension(path) == ".mds"; }
+
 // --- single rays ---
 
 void measure_rays(const BenchArguments& arguments, Interrupts& interrupts) {
   if (arguments.inputs.empty() || !arguments.from.empty() || !arguments.compare.empty() ||
       !arguments.csv.empty() || !arguments.html.empty() || !arguments.markdown.empty() ||
       !arguments.quoting.empty())
-    throw Error(ErrorCode::kUsage, "--rays takes .mdk files and writes a table and --json");
+    throw Error(ErrorCode::kUsage,
+                "--rays takes .mdk and .mds files and writes a table and --json");
   const MachineLimits limits(arguments.machine);
   check_outputs(arguments);
-  for (const std::string& input : arguments.inputs) MdkFile{input};
+  for (const std::string& input : arguments.inputs)
+    if (!is_scene(input)) MdkFile{input};
   ProgressBar progress(std::cerr, progress_style(arguments.messages));
   const LoopCheck check = interrupts.defer();
   const double share = 1.0 / static_cast<double>(arguments.inputs.size());
@@ -187,7 +196,8 @@ void measure_rays(const BenchArguments& arguments, Interrupts& interrupts) {
   for (const std::string& input : arguments.inputs) {
     const double done = static_cast<double>(models.size()) * share;
     ProgressPart part(progress, done, done + share);
-    models.push_back(bench_rays(input, {}, part));
+    models.push_back(is_scene(input) ? bench_scene_rays(input, {}, part)
+                                     : bench_rays(input, {}, part));
   }
   print_rays(std::cout, models);
   if (!arguments.json.empty()) write_text_file(arguments.json, rays_json(models));
@@ -200,8 +210,48 @@ void measure_rays(const BenchArguments& arguments, Interrupts& interrupts) {
                         " rays; this is a bug, please report it with the file");
 }
 
+// --- frames of scenes ---
+
+void measure_scenes(const BenchArguments& arguments, Interrupts& interrupts) {
+  if (!std::ranges::all_of(arguments.inputs, is_scene) || !arguments.from.empty() ||
+      !arguments.csv.empty() || !arguments.html.empty() || !arguments.markdown.empty() ||
+      !arguments.quoting.empty())
+    throw Error(ErrorCode::kUsage,
+                "scenes are measured without models beside them, to a table and --json");
+  const MachineLimits limits(arguments.machine);
+  check_outputs(arguments);
+  ProgressBar progress(std::cerr, progress_style(arguments.messages));
+  const LoopCheck check = interrupts.defer();
+  std::vector<SceneBench> scenes;
+  for (const std::string& input : arguments.inputs) {
+    BenchConfig config = arguments.config;
+    {
+      const MdsFile file(input);
+      Aabb bounds;
+      for (std::uint32_t i = 0; i < file.stage().instance_count(); ++i)
+        bounds.extend(file.stage().box_always(i));
+      config.request.camera = choose_camera(arguments.view, bounds);
+    }
+    config.request.width = arguments.view.size.width;
+    config.request.height = arguments.view.size.height;
+    config.request.shading = arguments.view.shading;
+    config.request.samples = arguments.view.samples;
+    scenes.push_back(bench_scene(input, config, progress));
+  }
+  print_scenes(std::cout, scenes);
+  if (!arguments.json.empty()) write_text_file(arguments.json, scenes_json(scenes));
+  for (const SceneBench& scene : scenes)
+    for (const SceneTechniqueBench& technique : scene.techniques)
+      if (technique.hit_mismatches > 0)
+        throw Error(ErrorCode::kInternal,
+                    scene.file + ": " + technique.id + " differs from brute force in " +
+                        std::to_string(technique.hit_mismatches) +
+                        " pixels; this is a bug, please report it with the file");
+}
+
 void run_bench(const BenchArguments& arguments, Command& command, Interrupts& interrupts) {
   if (arguments.rays) return measure_rays(arguments, interrupts);
+  if (std::ranges::any_of(arguments.inputs, is_scene)) return measure_scenes(arguments, interrupts);
   const bool is_measuring = arguments.from.empty();
   if (!arguments.compare.empty()) {
     if (!arguments.inputs.empty() || !is_measuring)

@@ -312,9 +312,14 @@ void run_rows(const ModelView& model, const RayQuery& query, double build_ms, co
 RayBench bench_rays(const std::string& path, const RayBenchConfig& config, ProgressSink& progress) {
   const Model loaded = Model::load(path);
   const ModelView& model = ModelHandle::view(loaded);
-  RayBench bench{
-      path, std::string(isa_in_use()), {}, model.triangle_count(), model.key_count(), config.rays,
-      {}};
+  RayBench bench{path,
+                 std::string(isa_in_use()),
+                 {},
+                 model.triangle_count(),
+                 model.key_count(),
+                 config.rays,
+                 {},
+                 0};
   const Stopwatch watch;
   const RayQuery query(loaded);
   const double build_ms = watch.milliseconds();

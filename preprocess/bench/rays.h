@@ -33,6 +33,7 @@ struct RayBench {
   std::string peer;  ///< empty without
   std::uint32_t triangles = 0, keys = 0, rays = 0;
   std::vector<RayBenchRow> rows;
+  std::uint32_t instances = 0;  ///< of a scene
 };
 
 struct RayBenchConfig {

@@ -45,12 +45,14 @@ std::string rays_json(const std::vector<RayBench>& models) {
       if (!model.peer.empty()) item["peer_differs"] = row.peer_differs;
       rows.push_back(std::move(item));
     }
-    list.push_back({{"file", std::filesystem::path(model.file).filename().string()},
-                    {"isa", model.isa},
-                    {"triangles", model.triangles},
-                    {"keys", model.keys},
-                    {"rays", model.rays},
-                    {"rows", std::move(rows)}});
+    Json item{{"file", std::filesystem::path(model.file).filename().string()},
+              {"isa", model.isa},
+              {"triangles", model.triangles},
+              {"keys", model.keys},
+              {"rays", model.rays}};
+    if (model.instances > 0) item["instances"] = model.instances;
+    item["rows"] = std::move(rows);
+    list.push_back(std::move(item));
   }
   return Json{{"schema", "mdk-rays/1"}, {"models", std::move(list)}}.dump(1) + "\n";
 }

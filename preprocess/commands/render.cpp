@@ -1,4 +1,4 @@
-// mdprep render: frames of a .mdk file to PNG, without a display.
+// mdprep render: frames of a .mdk file, or of a scene, to PNG, without a display.
 #include <iostream>
 #include <map>
 #include <memory>
@@ -10,10 +10,12 @@
 #include "common/base/isa.h"
 #include "common/base/text.h"
 #include "common/trace/renderer.h"
+#include "formats/files/file_kind.h"
 #include "formats/files/image_writer.h"
 #include "formats/mdk/mdk_file.h"
 #include "preprocess/commands/command_line.h"
 #include "preprocess/commands/film_writer.h"
+#include "preprocess/commands/render_scene.h"
 #include "preprocess/tool/files.h"
 #include "preprocess/tool/measures.h"
 #include "preprocess/tool/progress_bar.h"
@@ -31,6 +33,7 @@ struct RenderArguments {
   std::optional<double> time_seconds;
   double shutter_seconds = 0;
   std::string technique;
+  std::uint64_t cache_bytes = 0;
   ViewOptions view;
   MachineOptions machine;
   MessageOptions messages;
@@ -211,6 +214,22 @@ void check_outputs(const RenderArguments& arguments, const std::vector<PlannedFr
 
 void run_render(const RenderArguments& arguments, CommandContext& context) {
   const MachineLimits limits(arguments.machine);
+  if (lower_extension(arguments.input) == ".mds") {
+    if (!arguments.clip.empty())
+      throw Error(ErrorCode::kUsage, "--clip " + arguments.clip +
+                                         ": in a scene each instance plays a clip of its own");
+    return render_scene({.input = arguments.input,
+                         .output = arguments.output,
+                         .stats = arguments.stats,
+                         .frames = arguments.frames,
+                         .time_seconds = arguments.time_seconds,
+                         .shutter_seconds = arguments.shutter_seconds,
+                         .technique = arguments.technique,
+                         .cache_bytes = arguments.cache_bytes,
+                         .view = arguments.view,
+                         .messages = arguments.messages},
+                        context);
+  }
   const MdkFile file(arguments.input);
   const ModelView& model = file.model();
   const std::vector<PlannedFrame> frames = plan_frames(arguments, model);
@@ -244,16 +263,19 @@ void run_render(const RenderArguments& arguments, CommandContext& context) {
 
 void add_frame_options(Command& command, RenderArguments& arguments) {
   command
-      .add_value("--frames", "A:B[:S]",
-                 "Keys from A to B, both included, every S-th (default step: 1). Keys count\n"
-                 "from 0 through all clips; 'mdprep info' lists them. Without --frames and\n"
-                 "--time: every key of the clip.",
-                 "", arguments.frames, parse_key_range)
+      .add_value(
+          "--frames", "A:B[:S]",
+          "Keys from A to B, both included, every S-th (default step: 1). Keys count\n"
+          "from 0 through all clips; 'mdprep info' lists them. Without --frames and\n"
+          "--time: every key of the clip. Of a scene: so many thirtieths of a second from its\n"
+          "first time on; without either: that time.",
+          "", arguments.frames, parse_key_range)
       .excludes = {"--time", "--clip"};
-  command.add_value("--time", "T",
-                    "One frame at this time, in seconds from the start of the clip. Its number\n"
-                    "is that of the key before it.",
-                    "", arguments.time_seconds, parse_real);
+  command.add_value(
+      "--time", "T",
+      "One frame at this time, in seconds from the start of the clip, or of the scene's\n"
+      "clock. Its number is that of the key before it.",
+      "", arguments.time_seconds, parse_real);
   command
       .add_text("--clip", "NAME",
                 "The clip to render or that --time counts in (default: the first).", arguments.clip)
@@ -264,7 +286,10 @@ void add_frame_options(Command& command, RenderArguments& arguments) {
 
 void add_render_command(Command& command) {
   const auto arguments = std::make_shared<RenderArguments>();
-  command.add_text("FILE", "", "A .mdk file made by 'mdprep bake'.", arguments->input)
+  command
+      .add_text("FILE", "",
+                "A .mdk file made by 'mdprep bake', or a .mds scene made by 'mdprep scene'.",
+                arguments->input)
       .required()
       .with(OptionEffect::kFile);
   command
@@ -288,6 +313,13 @@ void add_render_command(Command& command) {
                     "0", arguments->shutter_seconds,
                     real_where([](double x) { return x >= 0; }, "seconds, 0 or more"));
   command
+      .add_value("--cache", "SIZE",
+                 "Of scenes: what is worked out of the instances that rays enter takes no more\n"
+                 "memory than this, key poses included (default: 64M). Changes no picture.",
+                 "64M", arguments->cache_bytes,
+                 [](const std::string& text) { return parse_size(text); })
+      .with(OptionEffect::kNone);
+  command
       .add_text("--stats", "FILE",
                 "Write times in ms and work per ray of every frame as JSON (mdprep-render/1).",
                 arguments->stats)
@@ -299,6 +331,7 @@ void add_render_command(Command& command) {
       "Example:\n"
       "  mdprep render hand.mdk -o hand_####.png --frames 0:29:2 --size 800x600\n"
       "  mdprep render hand.mdk -o hand.mp4 --frames 0:60\n"
+      "  mdprep render stadium.mds -o stadium.png --time 1 --size 1920x1080\n"
       "  mdprep render fox.mdk -o fox.png --clip Run --time 0.4 --camera \"0 80 250 0 40 0 0 1 0 "
       "45\"");
   command.set_body([arguments](CommandContext& context) { run_render(*arguments, context); });

@@ -103,6 +103,7 @@ SceneStorage random_scene(std::span<const Model> models, std::uint32_t instances
                                              static_cast<ClipWrap>(random.below(3)), has_path);
     SceneLabel label;
     label.id = 1000 + i;
+    label.mask = 1 + random.below(3);
     if (has_path) {
       ScenePath path{static_cast<std::uint32_t>(scene.path_keys.size()), 1 + random.below(12),
                      static_cast<PathEnds>(random.below(3))};

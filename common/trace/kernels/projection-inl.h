@@ -48,12 +48,25 @@ HWY_INLINE Corners gather_corners(const TriangleBlock& block, std::size_t first,
           to_pixel_space(map, gather(d, block.corner[2] + first, positions))};
 }
 
-/// Fills a ProjectedBlock, a vector of triangles at a time.
+/// The corners of a block by their numbers among positions.
+struct IndexedCorners {
+  const TriangleBlock& block;
+  const PixelFromWorld& map;
+  const Vec3f* positions;
+
+  HWY_INLINE Corners operator()(std::size_t first) const {
+    return gather_corners(block, first, map, positions);
+  }
+};
+
+/// Fills a ProjectedBlock of `count` triangles, a vector at a time: `corners(first)` gives those of
+/// triangles `first`...
+template <class CornerSource>
 class Projector {
  public:
-  Projector(const TriangleBlock& block, const PixelFromWorld& map, const Vec3f* positions,
-            ProjectedBlock& out)
-      : block_(block), map_(map), positions_(positions), out_(out) {}
+  /// `margin`: how far outside the corners' image bounds a hit may be (PixelFromWorld).
+  Projector(std::uint32_t count, const CornerSource& corners, float margin, ProjectedBlock& out)
+      : count_(count), corners_(corners), margin_(margin), out_(out) {}
 
   /// Looks at `wanted(first)`, the mask of lanes that matter given the bounds now stored for them,
   /// before it computes any form: lanes it leaves out are not live.
@@ -61,15 +74,15 @@ class Projector {
   HWY_INLINE void run(const Wanted& wanted) {
     const FloatTag d;
     out_.live = out_.behind = out_.small = 0;
-    for (std::size_t i = 0; i < block_.count; i += hn::Lanes(d)) {
-      const Corners corners = gather_corners(block_, i, map_, positions_);
+    for (std::size_t i = 0; i < count_; i += hn::Lanes(d)) {
+      const Corners corners = corners_(i);
       const FloatMask seen = set_bounds(corners, i);
       const FloatMask some = hn::And(seen, wanted(i));
       if (hn::AllFalse(d, some)) continue;
       const FloatMask sound = set_forms(corners, i);
       out_.live |= mask_bits(d, hn::And(some, sound)) << i;
     }
-    out_.live &= (1u << block_.count) - 1;
+    out_.live &= (1u << count_) - 1;
   }
 
  private:
@@ -90,9 +103,9 @@ class Projector {
       const auto u = hn::Mul(a, ra), v = hn::Mul(b, rb), w = hn::Mul(c, rc);
       const auto half = hn::Set(d, 0.5f);
       const auto lo =
-          hn::Add(hn::Ceil(hn::Sub(hn::Min(hn::Min(u, v), w), hn::Set(d, 0.75f))), half);
+          hn::Add(hn::Ceil(hn::Sub(hn::Min(hn::Min(u, v), w), hn::Set(d, 0.5f + margin_))), half);
       const auto hi =
-          hn::Add(hn::Floor(hn::Sub(hn::Max(hn::Max(u, v), w), hn::Set(d, 0.25f))), half);
+          hn::Add(hn::Floor(hn::Sub(hn::Max(hn::Max(u, v), w), hn::Set(d, 0.5f - margin_))), half);
       hn::Store(hn::IfThenElse(in_front, lo, hn::Neg(infinite)), d, first + i);
       hn::Store(hn::IfThenElse(in_front, hi, infinite), d, last + i);
       return hn::Sub(hi, lo);
@@ -124,9 +137,9 @@ class Projector {
     store(FloatTag(), p, forms.x + i, forms.y + i, forms.z + i);
   }
 
-  const TriangleBlock& block_;
-  const PixelFromWorld& map_;
-  const Vec3f* positions_;
+  const std::uint32_t count_;
+  const CornerSource& corners_;
+  const float margin_;
   ProjectedBlock& out_;
 };
 

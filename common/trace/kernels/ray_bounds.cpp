@@ -44,13 +44,14 @@ double largest_of(const Vec3d& v) { return std::max({v.x, v.y, v.z}); }
 
 /// Sides through the eye whose normal is `base` + place * `step`.
 void set_side(FrustumForms& forms, int side, const Vec3d& base, const Vec3d& step,
-              const FrustumBasis& basis, const Vec3d& reach) {
+              const FrustumBasis& basis, const Vec3d& reach, double before) {
   // Relative to |base| + place |step|, in units of 2^-24: a float normal is off by 4 (two
   // roundings, a product, a sum), its offset by as much; products and sums over a box by 5; the
   // triangle test's own view of the corners (offset from the eye, pixel space) by 6. 2^-19 is 32.
   constexpr double kRounding = 0x1p-19;
   const double error = basis.plane_error * (reach.x + reach.y + reach.z);
-  const double w_base = -dot(base, basis.origin) + kRounding * dot(absolute(base), reach) + error;
+  const double w_base = -dot(base, basis.origin) + error +
+                        kRounding * dot(absolute(base) + absolute(step) * (2 * before), reach);
   const double w_step = -dot(step, basis.origin) + kRounding * dot(absolute(step), reach);
   const bool usable =
       largest_of(absolute(base) + absolute(step) * double{kMaxImageSide}) < kLargestForm &&
@@ -95,20 +96,37 @@ Vec3d reach_of(const Aabb& box) {
 }  // namespace
 
 FrustumForms make_frustum_forms(const PinholeRays& world_rays, const Affine3d& local_from_world,
-                                const Aabb& bounds) {
+                                const Aabb& bounds, double before) {
   const FrustumBasis basis = make_basis(world_rays, local_from_world);
   FrustumForms forms;
   // How far coordinates and the eye reach from the origin: what roundings are relative to.
   const Vec3d reach = absolute(basis.origin) + reach_of(bounds);
   const double side = basis.det < 0 ? -1.0 : 1.0;
   // n.(ray through X) = det (x - X) for the plane at x: left sides take -n, right sides n.
-  set_side(forms, 0, basis.corner_x_dv * -side, basis.du_x_dv * -side, basis, reach);
-  set_side(forms, 1, basis.corner_x_dv * side, basis.du_x_dv * side, basis, reach);
-  set_side(forms, 2, basis.du_x_corner * -side, basis.du_x_dv * -side, basis, reach);
-  set_side(forms, 3, basis.du_x_corner * side, basis.du_x_dv * side, basis, reach);
+  set_side(forms, 0, basis.corner_x_dv * -side, basis.du_x_dv * -side, basis, reach, before);
+  set_side(forms, 1, basis.corner_x_dv * side, basis.du_x_dv * side, basis, reach, before);
+  set_side(forms, 2, basis.du_x_corner * -side, basis.du_x_dv * -side, basis, reach, before);
+  set_side(forms, 3, basis.du_x_corner * side, basis.du_x_dv * side, basis, reach, before);
   set_depth(forms, basis, bounds, reach);
   forms.eye = to_float(basis.origin);
   return forms;
+}
+
+void loosen(FrustumForms& forms, float distance) {
+  for (std::size_t side = 0; side < kSides; ++side) {
+    float base = 0, step = 0;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      base += std::abs(forms.base[axis * kSides + side]);
+      step += std::abs(forms.step[axis * kSides + side]);
+    }
+    forms.base[3 * kSides + side] += base * distance;
+    forms.step[3 * kSides + side] += step * distance;
+  }
+  const float depth =
+      (std::abs(forms.depth.x) + std::abs(forms.depth.y) + std::abs(forms.depth.z)) * distance;
+  forms.depth_offset -= depth;
+  forms.front_offset += depth;
+  if (depth > 0) forms.in_front = false;
 }
 
 BeamSpace make_beam_space(const Affine3d& local_from_world, const Aabb& bounds, const Aabb& mesh) {

@@ -29,9 +29,12 @@ struct FrustumForms {
 /// For boxes inside `bounds`, in the basis that `local_from_world` maps to. Every offset includes a
 /// slack that covers the rounding of the forms, of their values over boxes, and of the triangle
 /// test, so that no box that holds part of a hit triangle is ever dropped. Forms of a basis too
-/// near singular to tell anything are zero.
+/// near singular to tell anything are zero. Places of tiles may be as far as `before` below 0.
 FrustumForms make_frustum_forms(const PinholeRays& world_rays, const Affine3d& local_from_world,
-                                const Aabb& bounds);
+                                const Aabb& bounds, double before = 0);
+
+/// Makes forms hold for boxes that are off by at most `distance` along each axis.
+void loosen(FrustumForms& forms, float distance);
 
 /// How forms over the world read in a basis, for boxes inside its bounds. A plane's normal n
 /// becomes cofactor n, so no map need be inverted: near singular ones only cull less.

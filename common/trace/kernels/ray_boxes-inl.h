@@ -102,14 +102,14 @@ class LaneRay {
 /// A ray on its way down one cluster's tree (walk-inl.h).
 class RayInTree {
  public:
-  HWY_INLINE RayInTree(const BoxRay& ray, const WideBvhNode* nodes, const RayBlock* blocks,
-                       RayAim aim, const RayHit& hit)
+  HWY_INLINE RayInTree(const BoxRay& ray, const RayNode* nodes, const RayBlock* blocks, RayAim aim,
+                       const RayHit& hit)
       : ray_(Tag(), ray), nodes_(nodes), blocks_(blocks), aim_(aim), hit_(hit) {}
 
-  HWY_INLINE std::uint32_t enter(const WideBvhNode& node, float (&order)[kBvhWidth]) const {
+  HWY_INLINE std::uint32_t enter(const RayNode& node, float (&order)[kRayWidth]) const {
     const Tag d;
     std::uint32_t entered = 0;
-    for (std::size_t first = 0; first < kBvhWidth; first += hn::Lanes(d))
+    for (std::size_t first = 0; first < kRayWidth; first += hn::Lanes(d))
       entered |= ray_.enter(d, hit_.t, order + first, [&](std::uint32_t row) {
         return hn::Load(d, node.bounds[row] + first);
       }) << first;
@@ -118,15 +118,15 @@ class RayInTree {
   HWY_INLINE void expect(WideBvhChild child) const {
     const char* at = child.is_leaf() ? reinterpret_cast<const char*>(blocks_ + child.index())
                                      : reinterpret_cast<const char*>(nodes_ + child.index());
-    for (int line = 0; line < 3; ++line) hwy::Prefetch(at + 64 * line);
+    for (int line = 0; line < (child.is_leaf() ? 3 : 7); ++line) hwy::Prefetch(at + 64 * line);
   }
   bool is_past(float order) const { return order > hit_.t; }
   bool finished() const { return aim_ == RayAim::kAny && hit_.triangle != kNoHit; }
 
  private:
-  using Tag = hn::CappedTag<float, kBvhWidth>;
+  using Tag = hn::CappedTag<float, kRayWidth>;
   LaneRay<Tag> ray_;
-  const WideBvhNode* nodes_;
+  const RayNode* nodes_;
   const RayBlock* blocks_;
   RayAim aim_;
   const RayHit& hit_;
@@ -163,8 +163,8 @@ HWY_INLINE MappedRay map_ray(const KeyMap& from, const KeyMap& to, float s, cons
 }
 
 /// The same for a map that is not regular (AffinePath).
-MappedRay map_irregular(const Affine3d& local_from_world, const Vec3d& direction,
-                        const Vec3d& origin) {
+inline MappedRay map_irregular(const Affine3d& local_from_world, const Vec3d& direction,
+                               const Vec3d& origin) {
   const Vec3d o = local_from_world.point(origin), d = local_from_world.vector(direction);
   float stretch[4] = {};
   for (std::size_t k = 0; k < 3; ++k) {

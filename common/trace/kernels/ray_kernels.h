@@ -59,9 +59,13 @@ struct alignas(64) RayBlock {
 };
 static_assert(sizeof(RayBlock) == 192);
 
+/// Of hierarchies for single rays, which test a node's sixteen boxes at once.
+inline constexpr std::uint32_t kRayWidth = 16;
+using RayNode = WideNode<kRayWidth>;
+
 /// The hierarchy of one cluster; the links of its leaves are numbers of blocks.
 struct RayTree {
-  std::span<const WideBvhNode> nodes;
+  std::span<const RayNode> nodes;
   const RayBlock* blocks;
   float size[4];  ///< the largest |x|, |y|, |z| of all boxes, in the cluster's basis
 };
@@ -129,7 +133,7 @@ struct PosedScene {
   Vec3f center;    ///< of its bounds
   float diagonal;  ///< theirs
   KeyBox bounds;
-  std::span<const WideBvhNode> nodes;
+  std::span<const RayNode> nodes;
   const RayBlock* blocks;
   const PosedRayBlock* posed;
 };

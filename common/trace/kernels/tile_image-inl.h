@@ -68,15 +68,15 @@ class TileImage {
 
   /// The closest hits with the triangles in `mask` of a block. Returns how many ray-triangle pairs
   /// were evaluated.
-  std::uint32_t test(const TriangleBlock& block, const ProjectedBlock& projected,
+  std::uint32_t test(const std::uint32_t* triangles, const ProjectedBlock& projected,
                      std::uint32_t mask) {
     if (!begun_) begin();
     std::uint32_t pairs = 0;
     const std::uint32_t small = mask & projected.small;
     changed_ = 0;
-    if (small != 0) pairs += test_small(block, projected, small);
+    if (small != 0) pairs += test_small(triangles, projected, small);
     for (std::uint32_t rest = mask & ~small; rest != 0; rest &= rest - 1)
-      pairs += test_large(block, projected, static_cast<std::size_t>(__builtin_ctz(rest)));
+      pairs += test_large(triangles, projected, static_cast<std::size_t>(__builtin_ctz(rest)));
     if (changed_ != 0) update_far();
     return pairs;
   }
@@ -103,7 +103,7 @@ class TileImage {
 
   bool empty() const { return empty_; }
 
- private:
+ protected:
   void begin() {
     const FloatTag d;
     const hn::RebindToUnsigned<FloatTag> du;
@@ -112,8 +112,14 @@ class TileImage {
       hn::Store(hn::Zero(d), d, inverse_depth_ + i);
       hn::Store(hn::Set(du, kNoHit), du, triangle_ + i);
     }
+    for (std::size_t i = 0; i < kSquares; i += hn::Lanes(d)) hn::Store(hn::Zero(d), d, far_ + i);
+    set_places();
+  }
+
+  /// To be called where left_ or top_ changed.
+  void set_places() {
+    const FloatTag d;
     for (std::size_t i = 0; i < kSquares; i += hn::Lanes(d)) {
-      hn::Store(hn::Zero(d), d, far_ + i);
       for (std::size_t k = 0; k < 4; ++k) {
         const float offset = static_cast<float>(k * kSquareSide);
         hn::Store(hn::Add(hn::Load(d, kGridColumn + i), hn::Set(d, left_ + offset)), d, x_[k] + i);
@@ -170,7 +176,7 @@ class TileImage {
   }
 
   /// One triangle against all squares it may touch.
-  std::uint32_t test_large(const TriangleBlock& block, const ProjectedBlock& p, std::size_t i) {
+  std::uint32_t test_large(const std::uint32_t* triangles, const ProjectedBlock& p, std::size_t i) {
     // Fewer squares are tested sooner than told apart.
     constexpr int kWorthEdges = 6;
     std::uint32_t squares = squares_touched(p, i);
@@ -179,8 +185,7 @@ class TileImage {
     const float above = (p.behind >> i & 1u) != 0 ? 0.0f : -std::numeric_limits<float>::infinity();
     const auto pairs = static_cast<std::uint32_t>(__builtin_popcount(squares)) * kSquarePixels;
     for (; squares != 0; squares &= squares - 1)
-      test_square({block.triangle[i], above}, p, i,
-                  static_cast<std::uint32_t>(__builtin_ctz(squares)));
+      test_square({triangles[i], above}, p, i, static_cast<std::uint32_t>(__builtin_ctz(squares)));
     return pairs;
   }
 
@@ -232,7 +237,7 @@ class TileImage {
   }
 
   /// Triangles of at most 2x2 pixels, one a lane: each lane has a pixel of its own.
-  std::uint32_t test_small(const TriangleBlock& block, const ProjectedBlock& p,
+  std::uint32_t test_small(const std::uint32_t* triangles, const ProjectedBlock& p,
                            std::uint32_t mask) {
     const FloatTag d;
     std::uint32_t pairs = 0;
@@ -240,18 +245,20 @@ class TileImage {
       const std::uint32_t lanes = mask >> i & ((1u << hn::Lanes(d)) - 1);
       if (lanes == 0) continue;
       for (int corner = 0; corner < 4; ++corner)
-        pairs += test_pixel_each(block, p, i, lanes, static_cast<float>(corner & 1),
-                                 static_cast<float>(corner >> 1));
+        pairs += test_pixel_each(
+            triangles, p, i, lanes,
+            hn::Add(hn::Load(d, p.first_x + i), hn::Set(d, static_cast<float>(corner & 1))),
+            hn::Add(hn::Load(d, p.first_y + i), hn::Set(d, static_cast<float>(corner >> 1))));
     }
     return pairs;
   }
 
-  /// Each triangle of `lanes`, from lane `i`, against the pixel (dx, dy) past its first.
-  HWY_INLINE std::uint32_t test_pixel_each(const TriangleBlock& block, const ProjectedBlock& p,
-                                           std::size_t i, std::uint32_t lanes, float dx, float dy) {
+  /// Each triangle of `lanes`, from lane `i`, against the pixel (x, y) of its lane, which is not
+  /// before its first.
+  HWY_INLINE std::uint32_t test_pixel_each(const std::uint32_t* triangles, const ProjectedBlock& p,
+                                           std::size_t i, std::uint32_t lanes, FloatVec x,
+                                           FloatVec y) {
     const FloatTag d;
-    const auto x = hn::Add(hn::Load(d, p.first_x + i), hn::Set(d, dx));
-    const auto y = hn::Add(hn::Load(d, p.first_y + i), hn::Set(d, dy));
     const auto from_left = hn::Sub(x, hn::Set(d, left_));
     const auto from_top = hn::Sub(y, hn::Set(d, top_));
     const auto last = hn::Set(d, float{kTileSide - 1});
@@ -281,7 +288,7 @@ class TileImage {
     for (; lanes != 0; lanes &= lanes - 1) {
       const auto lane = static_cast<std::size_t>(__builtin_ctz(lanes));
       offer(static_cast<std::uint32_t>(pixel_x[lane]), static_cast<std::uint32_t>(pixel_y[lane]),
-            inverse_depth[lane], block.triangle[i + lane]);
+            inverse_depth[lane], triangles[i + lane]);
     }
     return pairs;
   }
@@ -301,6 +308,7 @@ class TileImage {
 
   void update_far() {
     empty_ = false;
+    touched_ |= changed_;
     for (; changed_ != 0; changed_ &= changed_ - 1) {
       const auto square = static_cast<std::size_t>(__builtin_ctz(changed_));
       far_[square] = min_of_sixteen(inverse_depth_ + square * kSquarePixels);
@@ -315,6 +323,7 @@ class TileImage {
   float min_inverse_depth_ = 0;
   float farthest_ = std::numeric_limits<float>::infinity();
   std::uint32_t changed_ = 0;  ///< squares with new hits
+  std::uint32_t touched_ = 0;  ///< squares that have had any
   bool begun_ = false;
   bool empty_ = true;
   alignas(64) float x_[4][kSquarePixels];  ///< of the pixel centres of each column of squares

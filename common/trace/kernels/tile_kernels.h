@@ -12,11 +12,16 @@
 
 namespace mdk {
 
+/// How far outside the corners' image bounds a triangle may be hit, in pixels: more than rounding
+/// moves anything by in the largest picture. Frusta allow for more (docs/kernels.md).
+inline constexpr float kBoundsMargin = 0x1p-6f;
+
 /// From a world point to the image: with p = m (v - origin), p.z is the depth t along the view axis
 /// and (p.x / p.z, p.y / p.z) the image point in pixels.
 struct PixelFromWorld {
   float m[3][3];
   Vec3f origin;
+  float margin = kBoundsMargin;
 };
 
 PixelFromWorld make_pixel_from_world(const PinholeRays& rays);

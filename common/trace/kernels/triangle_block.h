@@ -71,8 +71,8 @@ struct alignas(64) ProjectedBlock {
   /// Of the deepest and of the nearest corner; infinite where one is behind the eye.
   alignas(64) float min_inverse_depth[kBlockTriangles];
   alignas(64) float max_inverse_depth[kBlockTriangles];
-  /// First and last pixel centres a hit may be at: those within the corners' bounds, a quarter
-  /// pixel wider. Without end where a corner is behind the eye.
+  /// First and last pixel centres a hit may be at: those within the corners' bounds and
+  /// a margin (PixelFromWorld). Without end where a corner is behind the eye.
   alignas(64) float first_x[kBlockTriangles];
   alignas(64) float last_x[kBlockTriangles];
   alignas(64) float first_y[kBlockTriangles];

@@ -35,14 +35,14 @@ struct WaitingChild {
 };
 
 /// Calls leaf(number) for the leaves entered, near ones first.
-template <class Rays, class Leaf>
-HWY_INLINE void walk_bvh(std::span<const WideBvhNode> nodes, Rays& rays, const Leaf& leaf) {
+template <std::uint32_t kWidth, class Rays, class Leaf>
+HWY_INLINE void walk_bvh(std::span<const WideNode<kWidth>> nodes, Rays& rays, const Leaf& leaf) {
   if (nodes.empty()) return;
   // Every level leaves all but one child on the stack.
-  WaitingChild stack[std::size_t{kMaxBvhDepth + 1} * kBvhWidth];
+  WaitingChild stack[std::size_t{kMaxBvhDepth + 1} * kWidth];
   std::size_t size = 0;
-  const auto open = [&](const WideBvhNode& node) {
-    alignas(64) float order[kBvhWidth];
+  const auto open = [&](const WideNode<kWidth>& node) {
+    alignas(64) float order[kWidth];
     const std::size_t bottom = size;
     for (std::uint32_t entered = rays.enter(node, order); entered != 0; entered &= entered - 1) {
       const auto c = static_cast<std::size_t>(__builtin_ctz(entered));
