@@ -49,8 +49,8 @@ struct Shaded {
   Vec3f normal(std::uint32_t vertex) const {
     if (from_normals == nullptr) {
       Vec3f sum{};  // weighted by area: a cross product is twice its triangle's
-      for (const std::uint32_t number : crowd->triangles_around(vertex)) {
-        const Triangle& t = crowd->model().triangles[number];
+      for (const std::uint32_t around : crowd->triangles_around(vertex)) {
+        const Triangle& t = crowd->model().triangles[around];
         const Vec3f a = position(t.v[0]);
         sum += cross(position(t.v[1]) - a, position(t.v[2]) - a);
       }
